@@ -1,5 +1,5 @@
-// Everything that programs use. What this file includes, and what those headers include in turn, is the public
-// interface: it is what an installation has.
+// The umbrella header. The headers that it includes, directly or indirectly, are the public interface and part of an
+// installation.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/Distance.h>
@@ -18,6 +18,7 @@
 #include <Fulcrum/Collision/Shapes/Scaled.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
+#include <Fulcrum/Collision/Shapes/Submersion.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/Constraints/Joints/JointDrawing.h>
@@ -25,6 +26,7 @@
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Fields/Fields.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>

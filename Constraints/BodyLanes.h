@@ -1,10 +1,12 @@
-// Bodies' numbers in lanes, for the kernels of contacts and joints: gathered by the indices of a batch. Called where
-// batches are prepared and solved; free functions, no state.
+// Gathers the data of a batch's bodies into SIMD lanes, and scatters it back, for the kernels of contacts and joints.
+// Called where batches are prepared and solved; free functions, no state.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Constraints/Parts/SymmetricInverse.h>
 #include <Fulcrum/Math/Trigonometry.h>
+
+#include <initializer_list>
 
 namespace fulcrum {
 
@@ -16,7 +18,7 @@ FULCRUM_FORCE_INLINE float* RowOf(BodyState& state) {
     return kRow == BodyRow::Velocity ? state.VelocityRow() : state.PoseRow();
 }
 
-// Returns the lanes whose inertia turns.
+// Returns the mask of lanes whose inertia rotates with the body within the step.
 template <int N>
 FULCRUM_FORCE_INLINE auto GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
     const float* rows[N];
@@ -29,7 +31,7 @@ FULCRUM_FORCE_INLINE auto GatherMass(const uint32_t (&index)[N], const BodyMass*
     return r[BodyMass::kTurns] > Wide<N>(0.0f);
 }
 
-// Scales are those of a MassOverride.
+// Applies the scales of a MassOverride.
 template <class Real>
 FULCRUM_FORCE_INLINE void ScaleMass(InverseMass<Real>& inverse, const Real& massScale, const Real& inertiaScale) {
     inverse.mass = inverse.mass * massScale;
@@ -58,7 +60,7 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> GatherOffset(const uint32_t (&bodyA)[N], cons
     return Vec3<Real>(Real::Load(offsets[0]), Real::Load(offsets[1]), Real::Load(offsets[2]));
 }
 
-// Of both bodies the smaller inner radius, m.
+// The smaller of the two bodies' inner radii, m.
 template <int N>
 FULCRUM_FORCE_INLINE Wide<N> GatherInnerRadius(const uint32_t (&bodyA)[N], const uint32_t (&bodyB)[N],
                                                const BodyPose* poses) {
@@ -76,8 +78,8 @@ FULCRUM_FORCE_INLINE bool Any(WideMask<N> mask) {
     return mask.Any();
 }
 
-// sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the series where the angle is below a radian, as it
-// nearly always is; the next term is below a digit.
+// sin(a / 2) / a and cos(a / 2) with a = |v|: by the first terms of the Taylor series below one radian, the usual case;
+// the next term is below float precision.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
     const Real square = Dot<Real>(v, v), one(1.0f);
@@ -93,7 +95,7 @@ FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
     return Vec2<Real>(Select(isFar, Real(half.sine / angle), scale), Select(isFar, half.cosine, cosine));
 }
 
-// Brings BodyState::halfTurn of a row of displacements up to date with its rotation.
+// Updates BodyState::halfTurn in a row of displacements from the row's rotation.
 template <class Real>
 FULCRUM_FORCE_INLINE void SetHalfTurn(Real (&row)[8]) {
     const Vec2<Real> half = HalfTurnOf<Real>(VectorAt<BodyState::kAngular>(row));

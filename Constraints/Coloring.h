@@ -1,7 +1,7 @@
-// Colors contacts and joints so that no two of a color share a moving body: those of a color are solved at the same
-// time, in lanes and on any number of threads, and the result does not depend on their order. Kept from step to step:
-// only what begins or ends is colored. Called by the Color stage and where joints come and go. Serial; the same calls
-// give the same colors.
+// Graph coloring of contacts and joints: no two constraints of a color share a dynamic body, so they can be solved in
+// parallel, in lanes and on any number of threads, and the result does not depend on their order. Persistent and
+// incremental: only constraints that begin or end are colored. Called by the Color stage and where joints are created
+// or destroyed. Serial and deterministic: the same calls give the same colors.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace fulcrum {
 
 struct ColorSlot {
-    uint8_t color = 0xFF;  // index into ConstraintColoring::Colors(); kOverflow where none was free
+    uint8_t color = 0xFF;  // index into ConstraintColoring::Colors(); kOverflow if none was free
     uint32_t slot = 0;     // index into the color's list
 };
 
@@ -20,16 +20,16 @@ class ConstraintColoring {
 public:
     static constexpr int kColors = 64;
     static constexpr uint8_t kOverflow =
-        kColors;  // constraints of bodies that have more than 64: solved one after the other
+        kColors;  // for constraints that fit no color (a body with more than 64 of them): solved serially
 
     struct Entry {
         uint32_t constraint, bodyA, bodyB;
-        bool stillA = false, stillB = false;  // the body is not dynamic: constraints may share it
+        bool fixedA = false, fixedB = false;  // the body is not dynamic: constraints may share it
     };
     enum class Kind : uint8_t {
         Moving,  // contacts of two dynamic bodies
-        Fixed,   // contacts of a dynamic body A with one that is not
-        Joint,   // either body may be still
+        Fixed,   // contacts between a dynamic body A and a static or kinematic one
+        Joint,   // either body may be static or kinematic
     };
     static constexpr size_t kKinds = 3;
     struct Color {
@@ -38,13 +38,15 @@ public:
         bool Empty() const { return lists[0].empty() && lists[1].empty() && lists[2].empty(); }
     };
 
-    // Colors are solved in ascending order: what is to win comes `late`.
+    // Colors are solved in ascending order, and the last one solved wins where constraints conflict: such constraints
+    // ask for a `late` color.
     ColorSlot Add(Kind kind, const Entry& entry, bool late);
 
-    // The same entry again. Returns the constraint of its kind that now has its place, or itself where it was the last.
+    // Takes the entry that was added. Returns the constraint of its kind that was moved into its slot, or itself if its
+    // slot was the last.
     uint32_t Remove(Kind kind, const Entry& entry, ColorSlot place);
 
-    // Marks what was derived from the colors as out of date.
+    // Invalidates everything derived from the colors (Version changes).
     void Invalidate() {
         ++version_;
         ++jointVersion_;
@@ -56,7 +58,7 @@ public:
     const Color& At(int color) const { return colors_[static_cast<size_t>(color)]; }
     uint32_t Size() const { return size_; }
     bool HasOverflow() const { return !colors_[kOverflow].Empty(); }
-    // Grows with every change: what was derived from the colors holds as long as it stays.
+    // Incremented by every change: data derived from the colors is valid while it stays the same.
     uint64_t Version() const { return version_; }
     uint64_t JointVersion() const { return jointVersion_; }  // the same, of joints alone
     void ReserveBodies(uint32_t count);
@@ -66,14 +68,14 @@ private:
     friend struct SnapshotAccess;
     template <class Visit>
     static void VisitMoving(const Entry& entry, Visit&& visit) {
-        if (!entry.stillA) visit(entry.bodyA);
-        if (!entry.stillB) visit(entry.bodyB);
+        if (!entry.fixedA) visit(entry.bodyA);
+        if (!entry.fixedB) visit(entry.bodyB);
     }
     std::vector<Entry>& List(uint8_t color, Kind kind) { return colors_[color].lists[static_cast<size_t>(kind)]; }
 
     std::vector<Color> colors_ = std::vector<Color>(kColors + 1);
-    std::vector<uint64_t> used_;       // by body: bit c is set where a constraint of color c moves it
-    std::vector<uint32_t> overflows_;  // by body: its constraints without a color
+    std::vector<uint64_t> used_;       // by body: bit c is set if a constraint of color c moves it
+    std::vector<uint32_t> overflows_;  // by body: number of its constraints without a color
     uint32_t size_ = 0;
     uint64_t version_ = 1, jointVersion_ = 1;
 };

@@ -6,8 +6,7 @@
 
 namespace fulcrum {
 
-// The speed at which a point separates that is hit at `speed`, m/s. At the threshold and below nothing bounces, so that
-// bodies come to rest.
+// Separation speed after an impact at `speed`, m/s. Zero at the threshold and below, so that bodies come to rest.
 template <class Real>
 inline Real BounceSpeed(Real restitution, Real speed, Real threshold) {
     return Select(speed > threshold, restitution * speed, Real(0.0f));

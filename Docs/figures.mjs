@@ -43,6 +43,16 @@ function sceneTable({ scenes }) {
   return table(hasPenetration ? [...heading, 'largest penetration'] : heading, rows);
 }
 
+// What fits the first page.
+const SHOWN = ['pyramid', 'hull_pile', 'drum', 'joint_grid', 'ragdolls', 'high_speed', 'mostly_asleep'];
+function summaryTable({ scenes }) {
+  const rows = scenes.filter(({ name }) => SHOWN.includes(name)).map((scene) => [
+    `\`${scene.name}\``, scene.what.replace('#', thousands(scene.joints ?? 0)), milliseconds(scene.threads[1].ms),
+    ratio(scene.threads[1].ratio), accuracyText(scene),
+  ]);
+  return table(['scene', 'what', 'ms', 'over Bullet', 'accuracy figure'], rows);
+}
+
 // Of the scenes' ends: Samples/Scenes/RestMeters.h.
 function restTable({ scenes }) {
   const rows = scenes.filter((scene) => scene.rest).map(({ name, rest }) => [
@@ -86,7 +96,7 @@ function settingsTable({ scenes }) {
   return table(['scene', '(4, 1, 1), the default', '(1, 10, 2)'], rows);
 }
 
-const BLOCKS = { scenes: sceneTable, rest: restTable, stages: stageTable, settings: settingsTable, 'missed aims': missedAims };
+const BLOCKS = { scenes: sceneTable, summary: summaryTable, rest: restTable, stages: stageTable, settings: settingsTable, 'missed aims': missedAims };
 const INLINE = {
   'ns of a single ray': ({ scenes }) => thousands(Math.round(scenes.find(({ name }) => name === 'rays').single_ns)),
   'times of Bullet': bulletTimes,

@@ -26,8 +26,8 @@ private:
     R (*call_)(void*, Args...);
 };
 
-// A range of items and the worker that runs it. `worker` is 0 .. WorkerCount() - 1 and no two ranges that run at the
-// same time have the same one: it selects scratch memory.
+// A range of items and the worker that runs it. `worker` is 0..WorkerCount() - 1 and unique among the ranges that run
+// at the same time: it selects scratch memory.
 struct JobRange {
     uint32_t begin, end;
     uint32_t worker;
@@ -41,11 +41,11 @@ public:
     virtual uint32_t WorkerCount() const = 0;
 
     // Runs `job` over 0 .. count - 1 in ranges of at least `minimumRange` items (the last may be shorter) and returns
-    // when all are done. The caller takes part. How the range is cut must not influence what the engine computes.
+    // when all are done. The caller takes part. The partition must not influence the engine's results.
     virtual void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) = 0;
 
-    // Runs `job(worker)` once on every worker that is free, and always on the caller; returns when all that began have
-    // returned. The engine relies on the caller's own run alone: further workers only make it faster.
+    // Runs `job(worker)` once on every free worker, and always on the caller; returns when all started runs have
+    // returned. The engine only relies on the caller's run: further workers make it faster.
     virtual void RunOnWorkers(FunctionRef<void(uint32_t worker)> job) = 0;
 };
 

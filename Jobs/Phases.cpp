@@ -1,7 +1,7 @@
 // How workers synchronize. One counter, `done`, counts the blocks finished since the first phase. Block counts are
-// known beforehand, so each worker goes through the phases on its own and knows from `done` alone whether its phase may
-// begin (done has reached the sum of the earlier counts) or is over. No thread opens a phase for the others: finishing
-// the last block of a phase begins the next one.
+// known beforehand, so each worker proceeds through the phases independently: `done` tells whether its phase may begin
+// (done has reached the sum of the earlier counts) or is over. No thread has to start a phase for the others: finishing
+// the last block of a phase starts the next one.
 //
 // Blocks are claimed from shares: one word per worker, with the phase and the number of blocks of the share taken from
 // the front (by the owner) and from the back (by thieves). Words are never reset: a claim for a later phase than the
@@ -11,7 +11,7 @@
 // - after its claim: the others wait, since only this worker can finish that block.
 //
 // Memory order: a worker adds to `done` with release after its blocks, and begins a phase after an acquiring load saw
-// the sum of all earlier phases. All additions are read-modify-writes (one release sequence) but for the leader's
+// the sum of all earlier phases. All additions are read-modify-writes (one release sequence) except for the leader's
 // store, and the leader acquired everything before it. Claims need no order: they carry no data, and atomics of one
 // word are coherent.
 //
@@ -29,7 +29,7 @@ namespace {
 constexpr uint32_t kMaximumShares = 64;       // further workers begin at another's share
 constexpr uint32_t kMaximumBlocks = 1 << 20;  // fewer in a phase, so that a share's two counts fit 20 bits each
 constexpr uint32_t kMaximumPhases = 1 << 24;
-// As long as several blocks take; after that the thread waited for may need this core.
+// About the time of several blocks; after that the thread waited for may need this core.
 constexpr std::chrono::microseconds kBarrierSpin{100};
 // Reading another worker's share takes the cache line from its owner, which costs it 0.1 us at its next claim. So a
 // worker that finishes first waits a little before it steals.
@@ -85,7 +85,7 @@ void PhaseRunner::Await(uint64_t blocks) {
         if (!spin.Pause()) std::this_thread::yield();
 }
 
-// The block's index in the phase, or kNone where all of the share is taken or the phase is over.
+// The block's index in the phase, or kNone if all of the share is taken or the phase is over.
 uint32_t PhaseRunner::Claim(uint32_t phase, uint32_t share, Side side) {
     const uint32_t begin = ShareBegin(share, blockCounts_[phase]);
     const uint32_t size = ShareBegin(share + 1, blockCounts_[phase]) - begin;

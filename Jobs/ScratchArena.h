@@ -18,7 +18,7 @@ public:
     ScratchArena() = default;
 
     // Uninitialized memory for `count` objects, aligned to kAlignment, valid until Reset. Empty for a count of 0.
-    // Pieces of different calls share no cache line. Throws std::bad_alloc where memory has run out.
+    // Pieces of different calls share no cache line. Throws std::bad_alloc if out of memory.
     template <class T>
     requires(std::is_trivially_destructible_v<T> && alignof(T) <= kAlignment) std::span<T> Allocate(size_t count) {
         if (count > kMaximumBytes / sizeof(T)) throw std::bad_array_new_length();

@@ -58,7 +58,7 @@ uint32_t PieceOf(uint32_t blocksLeft) { return (blocksLeft + 7) / 8; }
 }  // namespace
 
 struct ThreadPool::State {
-    // What a worker has left of a ParallelFor: first and last block of minimumRange items, packed in one word.
+    // A worker's remaining share of a ParallelFor: first and last block of minimumRange items, packed in one word.
     struct alignas(64) Share {
         std::atomic<uint64_t> blocks{0};
     };
@@ -78,7 +78,7 @@ ThreadPool::ThreadPool(uint32_t workers) : state_(std::make_unique<State>()) {
         for (uint32_t worker = 1; worker < workers; ++worker)
             state_->threads.emplace_back([this, worker] { RunHelper(worker); });
     } catch (const std::system_error&) {
-        // The system refuses more threads: go on with those that started.
+        // The system refuses more threads: continue with those that started.
     }
     helperCount_ = static_cast<uint32_t>(state_->threads.size());
 }
@@ -129,8 +129,8 @@ void ThreadPool::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<
     });
 }
 
-// The blocks in a word are taken at most once: a successful exchange means that they were there at that moment, so that
-// ABA does no harm. No memory order is needed: the gate orders the data.
+// The blocks in a word are taken at most once: a successful exchange means that they were there at that moment, so ABA
+// is harmless. No memory order is needed: the gate orders the data.
 ThreadPool::Blocks ThreadPool::TakeFromOwnShare(uint32_t worker) {
     std::atomic<uint64_t>& share = state_->shares[worker].blocks;
     uint64_t blocks = share.load(std::memory_order_relaxed);

@@ -1,5 +1,5 @@
-// The engine's own job system: a work-stealing thread pool. Used by PhysicsSystem where the game brings no JobSystem of
-// its own. Any thread may call it, jobs included; constructed and destroyed by one thread while no call is running.
+// The engine's own job system: a work-stealing thread pool. Used by PhysicsSystem unless the game provides its own
+// JobSystem. Any thread may call it, jobs included; constructed and destroyed by one thread while no call is running.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -21,7 +21,7 @@ public:
     static constexpr uint32_t kMaximumWorkers = 64;
 
     // workers: threads that take part, the caller included, so that 1 starts no thread. Clamped to 1 ..
-    // kMaximumWorkers; fewer where the operating system refuses to start as many (see WorkerCount).
+    // kMaximumWorkers; fewer if the operating system refuses to start that many (see WorkerCount).
     explicit ThreadPool(uint32_t workers);
     ~ThreadPool() override;
     ThreadPool(const ThreadPool&) = delete;

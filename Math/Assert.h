@@ -1,5 +1,5 @@
-// Checks of the engine's own invariants, compiled in where FULCRUM_ASSERTIONS is defined (debug and sanitizer presets).
-// Arguments of callers are not checked with these: invalid ones give an error in a Result.
+// Checks of the engine's own invariants, compiled in if FULCRUM_ASSERTIONS is defined (debug and sanitizer presets).
+// Arguments of callers are not checked with these: invalid ones are reported by a Result.
 #pragma once
 
 #ifdef FULCRUM_ASSERTIONS

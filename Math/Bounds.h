@@ -1,5 +1,5 @@
 // Axis-aligned bounding boxes. Bounds (float) is for shapes in their own frame and for the broad phase. Boxes in double
-// are rounded outwards to it, so that they are contained however far from the origin.
+// are rounded outwards to float, so that they are contained at any distance from the origin.
 #pragma once
 
 #include <Fulcrum/Math/Vector.h>
@@ -45,7 +45,8 @@ struct Bounds {
 inline float RoundDown(double x) {
     const float f = static_cast<float>(x);
     const auto bits = std::bit_cast<uint32_t>(f);
-    const uint32_t isZero = -static_cast<uint32_t>((bits << 1) == 0), isNegative = -(bits >> 31);  // all bits, or none
+    const uint32_t isZero = -static_cast<uint32_t>((bits << 1) == 0),
+                   isNegative = -(bits >> 31);  // all bits set, or none
     const uint32_t below = (isZero & 0x80000001u) | (~isZero & (bits - 1u - 2u * isNegative));
     const uint32_t isAbove = -static_cast<uint32_t>(double{f} > x);
     return std::bit_cast<float>((isAbove & below) | (~isAbove & bits));

@@ -9,7 +9,7 @@
 
 namespace fulcrum {
 
-// A callable that is kept, or none. Copies share it.
+// An owned callable, or none. Copies share it.
 template <class Signature>
 class Function;
 template <class R, class... Args>

@@ -1,5 +1,5 @@
-// A fast hash, 64 bits, of bytes in memory: to compare states, and to notice damage. The same on every machine of the
-// same byte order. Not for keys that somebody chooses on purpose.
+// A fast hash, 64 bits, of bytes in memory: to compare states, and to notice damage. The same on all machines of the
+// same byte order. Not secure against chosen keys.
 #pragma once
 
 #include <bit>
@@ -12,14 +12,14 @@ namespace fulcrum {
 
 inline constexpr uint64_t kHashSeed = 0x9E3779B97F4A7C15ull;
 
-// The hash of what was hashed to `hash`, followed by a word. For either argument given, another other argument gives
-// another result.
+// The hash of the data hashed so far followed by a word. For a fixed value of either argument the map is injective in
+// the other.
 inline uint64_t HashWord(uint64_t hash, uint64_t word) {
     return std::rotl((hash ^ word) * 0xD6E8FEB86659FD93ull, 29) + 0x165667B19E3779F9ull;
 }
 
-// Words go round eight running hashes, so that the processor works on all at once, and these are hashed at last. A
-// change of one word, be it of one bit, always changes the result: each step is a bijection.
+// Words are distributed round robin to eight running hashes, for instruction-level parallelism, which are combined at
+// the end. A change of one word, be it of one bit, always changes the result: each step is a bijection.
 inline uint64_t HashBytes(const void* bytes, size_t size, uint64_t seed = kHashSeed) {
     const unsigned char* at = static_cast<const unsigned char*>(bytes);
     const auto wordAt = [&](size_t i) {

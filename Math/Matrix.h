@@ -32,7 +32,7 @@ inline Mat3<Real> ToMatrix(const Quat<Real>& q) {
             Vec3<Real>(xz + wy, yz - wx, one - (xx + yy))};
 }
 
-// a^T b: the rotation of frame b seen from frame a.
+// a^T b: the rotation of frame b relative to frame a.
 template <class Real>
 inline Mat3<Real> TransposeMultiply(const Mat3<Real>& a, const Mat3<Real>& b) {
     return {a.TransposeMultiply(b.x), a.TransposeMultiply(b.y), a.TransposeMultiply(b.z)};

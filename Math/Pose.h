@@ -17,7 +17,7 @@ struct Pose {
     }
 };
 
-// A pose near another: float is exact enough between neighbors. Frame b seen from frame a.
+// A pose relative to a nearby one, for which float is precise enough: frame b relative to frame a.
 struct RelativePose {
     Vector3 position = Vector3::Zero();  // m
     Quaternion rotation;                 // unit

@@ -1,4 +1,5 @@
-// Rotation as a unit quaternion, over one scalar or over lanes. Products are spelled out for the sake of equal bits.
+// Rotation as a unit quaternion, over one scalar or over lanes. Products are written out so that results are
+// bit-identical.
 #pragma once
 
 #include <Fulcrum/Math/ForceInline.h>

@@ -1,10 +1,10 @@
-// The result of a call whose input may be invalid: a value, or an Error that says what is wrong and where. A call that
-// returns an Error has created and changed nothing.
+// The result of a call whose input may be invalid: a value, or an Error that tells what is wrong and where. A call that
+// returns an Error has no effect.
 #pragma once
 
 #include <Fulcrum/Math/Assert.h>
+#include <Fulcrum/Math/Log.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -20,10 +20,10 @@ enum class ErrorCode {
     Negative,        // must be zero or more
     OutOfRange,      // outside the range named in the message
     Unnormalized,    // a rotation or a direction is not of length 1
-    Degenerate,      // points without volume, an empty compound and the like
+    Degenerate,      // points without volume, an empty compound, etc.
     UnknownId,       // no such body, or it was removed
     Unsupported,     // valid, but not for this kind of body or shape
-    NotAllowedHere,  // a call in what the engine calls back, or under Queries().Hold(), that would have to wait for
+    NotAllowedHere,  // a call from a callback of the engine, or under Queries().Hold(), that would have to wait for
                      // itself
 };
 
@@ -34,9 +34,9 @@ struct Error {
 
 using MaybeError = std::optional<Error>;
 
-// Prints the message to standard error and aborts: for Value() of an error and GetError() of a value.
+// Logs the message (Log.h: to standard error by default) and aborts: for Value() of an error and GetError() of a value.
 [[noreturn, gnu::cold, gnu::noinline]] inline void AbortWith(const char* what, const std::string& message) {
-    std::fprintf(stderr, "fulcrum: %s%s\n", what, message.c_str());
+    Log(LogLevel::Fatal, (what + message).c_str());
     std::abort();
 }
 
@@ -59,15 +59,22 @@ public:
 
     explicit operator bool() const { return hasValue_; }
     // Only if the result is true. Otherwise prints the error's message and aborts, in every build.
-    T& Value() {
+    T& Value() & {
         if (!hasValue_) [[unlikely]]
             AbortWith("Value() of an error: ", error_.message);
         return value_;
     }
-    const T& Value() const {
+    const T& Value() const& {
         if (!hasValue_) [[unlikely]]
             AbortWith("Value() of an error: ", error_.message);
         return value_;
+    }
+    // Of a temporary: the value itself, so that `auto& body = bodies.Create(settings).Value()` does not compile, and
+    // `const auto& body = ...` names what lives on.
+    T Value() && {
+        if (!hasValue_) [[unlikely]]
+            AbortWith("Value() of an error: ", error_.message);
+        return std::move(value_);
     }
     // Only if the result is false. Otherwise aborts.
     const Error& GetError() const {

@@ -2,7 +2,7 @@
 // comparisons and bit operations only. Used wherever the engine turns angles into rotations and back. Free functions,
 // no state.
 //
-// Where not said otherwise a function takes Real = float, double or, for angles, Wide<N>, whose lanes give the bits of
+// Unless stated otherwise, a function takes Real = float, double or, for angles, Wide<N>, whose lanes give the bits of
 // float. Arguments must be finite. The errors are the largest measured, in units of the result's last place: over every
 // float from 2^-13 up, and over millions of doubles and pairs.
 #pragma once
@@ -199,7 +199,7 @@ requires(!std::is_integral_v<Real>) inline Real Atan2(const Real& y, const Real&
     return Select(y < zero, -result, result);
 }
 
-// 0 .. pi. Arguments beyond -1 .. 1 count as -1 and 1. Error: float 2.9, double 3.0.
+// 0 .. pi. Arguments are clamped to -1..1. Error: float 2.9, double 3.0.
 template <class Real>
 requires(!std::is_integral_v<Real>) inline Real Acos(const Real& x) {
     const Real one(1.0f);

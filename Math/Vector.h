@@ -1,5 +1,5 @@
 // The engine's vectors, of three coordinates. Vector3 (float) is for everything relative to a body, a pair or a cell;
-// Position (double) for places in the world. Kernels are templates over Real: float, double, or Wide<N> for N lanes.
+// Position (double) for positions in the world. Kernels are templates over Real: float, double, or Wide<N> for N lanes.
 //
 // Own class instead of Eigen's, which is slow to compile (Docs/Architecture.md). Members that Eigen has, too, have the
 // same names and meaning. Vectors convert implicitly from Eigen's expressions, and to Eigen's vectors in copies and
@@ -162,13 +162,13 @@ inline Vec3<Real> Cross(const Vec3<Real>& a, const Vec3<Real>& b) {
 inline float LengthSquared(const Vector3& v) { return Dot(v, v); }
 inline float Length(const Vector3& v) { return detail::SquareRoot(Dot(v, v)); }
 
-// v / |v|, or `fallback` where |v| is not larger than 1e-12.
+// v / |v|, or `fallback` if |v| is not larger than 1e-12.
 inline Vector3 Normalized(const Vector3& v, const Vector3& fallback = Vector3(0, 1, 0)) {
     const float length = Length(v);
     return length > 1e-12f ? Vector3(v * (1.0f / length)) : fallback;
 }
 
-// A unit vector perpendicular to the unit vector n, continuous but for two seams.
+// A unit vector perpendicular to the unit vector n, continuous except at two seams.
 // Source: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017.
 inline Vector3 Perpendicular(const Vector3& n) {
     const float sign = __builtin_copysignf(1.0f, n.z());

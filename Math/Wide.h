@@ -1,5 +1,5 @@
-// Lanes: Wide<N> is N floats (N = 1, 4, 8, 16) that are added, multiplied, compared and selected at once. Kernels are
-// templates over Real = float or Wide<N> and give the same bits for every N. The only file with intrinsics and CPU
+// SIMD lanes: Wide<N> is N floats (N = 1, 4, 8, 16) that are added, multiplied, compared and selected at once. Kernels
+// are templates over Real = float or Wide<N> and give the same bits for every N. The only file with intrinsics and CPU
 // conditionals. The arithmetic uses the compilers' vector extension, so any width works on any CPU; intrinsics are used
 // where compilers generate poor code.
 #pragma once
@@ -105,7 +105,7 @@ struct LaneTypes<16> {
 #undef FULCRUM_LANES_OF
 }  // namespace registers
 
-// One truth value a lane.
+// A mask: one truth value per lane.
 template <int N>
 struct WideMask {
     using Int = typename registers::LaneTypes<N>::Int;
@@ -232,7 +232,7 @@ inline Wide<N> Select(WideMask<N> mask, Wide<N> a, Wide<N> b) {
 }
 inline float Select(bool mask, float a, float b) { return mask ? a : b; }
 
-// a < b ? a : b and a > b ? a : b: the second operand where one is NaN or both are zeros, as the CPUs' instructions.
+// a < b ? a : b and a > b ? a : b: the second operand if one is NaN or both are zeros, like the CPU instructions.
 template <int N>
 inline Wide<N> Min(Wide<N> a, Wide<N> b) {
 #if defined(__AVX2__)

@@ -5,12 +5,10 @@
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
-#include <Fulcrum/Physics/World/FatBounds.h>
-#include <Fulcrum/Physics/World/Filters.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
-#include <Fulcrum/Physics/World/Materials.h>
 #include <Fulcrum/Physics/World/Sleeping.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
+#include <Fulcrum/Physics/World/SteadyPushes.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <cmath>
@@ -21,19 +19,12 @@ namespace fulcrum {
 
 namespace {
 
-// What GetPose gave is taken back with its bits: normalizing a rotation again changes them.
-Quaternion NormalizedUnlessItIs(const Quaternion& q) {
-    const double squared = double{q.x} * q.x + double{q.y} * q.y + double{q.z} * q.z + double{q.w} * q.w;
-    constexpr double kRounding = 0x1p-21;  // more than four components, rounded to float, leave
-    return std::fabs(squared - 1) <= kRounding ? q : Normalized(q);
-}
-
 // The center frame's pose of a body whose own frame is at `position`, `q`, which is normalized.
 Pose CenterPose(const Shape& shape, const Position& position, const Quaternion& q) {
     return {position + Rotate(q, shape.Mass().centerOfMass).cast<double>(), q};
 }
 
-void FillDynamics(BodyDynamics& d, const BodySettings& s) {
+void FillDynamics(BodyDynamics& d, BodyCold& cold, const BodySettings& s) {
     const MassProperties& mass = s.shape->Mass();
     d.motion = s.motion;
     d.lockedAxes = s.lockedAxes;
@@ -46,21 +37,26 @@ void FillDynamics(BodyDynamics& d, const BodySettings& s) {
     d.allowSleep = s.allowSleep;
     d.layer = s.layer & 31u;
     d.continuous = s.continuous != ContinuousCollision::Off;
-    if (s.motion != MotionType::Dynamic) return;
+    const bool isDynamic = s.motion == MotionType::Dynamic;
+    // For the others, mass settings take effect when they become dynamic.
+    const bool isGiven = mass.volume > 0 && (s.mass > 0 || s.density != 1000.0f || !s.inertia.isZero(0));
+    if (!isDynamic && !isGiven) return;
     const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;
-    SetMass(d, mass.principalAxes, kilograms,
-            s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia);
+    const Vector3 inertia =
+        s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia;
+    if (isDynamic) SetMass(d, mass.principalAxes, kilograms, inertia);
+    else cold.keptMass = std::make_unique<KeptMass>(KeptMass{kilograms, inertia, mass.principalAxes});
 }
 
-// What a user may set: any finite velocity, of which what no body can have is cut off.
+// Sets a velocity given by the user: any finite one, clamped to what bodies support.
 void SetVelocityOf(WorldState& world, uint32_t body, Vector3 linear, Vector3 angular) {
     LimitLength(linear, kFastestLinear);
     LimitLength(angular, kFastestAngular);
     world.bodies.SetVelocity(body, linear, angular);
 }
 
-// For the first body of an empty world. Only so far out that a place near zero, measured from there, is off by less
-// than the margin of fat bounds: farther out doubles would round away what lies between two bodies near zero.
+// Called for the first body of an empty world: moves the origin of the bounds near it. Limited so that positions near
+// zero relative to that origin are rounded by less than the fat bounds' margin.
 void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
     constexpr double kStep = 1024, kFarthest = 0x1p40;  // m
     const Position center = world.bodies.CenterOf(body);
@@ -68,65 +64,6 @@ void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
         const double nearest = std::floor(center[k] / kStep + 0.5) * kStep;
         world.colliders.boundsOrigin[k] = std::clamp(nearest, -kFarthest, kFarthest);
     }
-}
-
-// Ends the contacts that the body's filters forbid, has those found that they allow.
-void Refilter(WorldState& world, uint32_t body) {
-    RemoveForbiddenPairs(world, body);
-    WakeBody(world, body);
-    WakeNeighbors(world, body);
-    if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
-    RequeueColliders(world.bodies, world.colliders, body);
-}
-
-// After the body became a sensor, or ceased to be one: what meets it is searched anew.
-void MoveToItsTree(WorldState& world, uint32_t body) {
-    ColliderStore& store = world.colliders;
-    const BodyCold& cold = world.bodies.cold[body];
-    const BodyDynamics& d = world.bodies.dynamics[body];
-    if (!cold.isSensor) (d.motion != MotionType::Static ? store.movingLayers : store.staticLayers) |= 1u << d.layer;
-    VisitColliders(world, body, [&](uint32_t i) {
-        Collider& collider = store.colliders[i];
-        store.TreeOf(collider).Remove(i);
-        collider.sensor = cold.isSensor;
-        SetFatBounds(world.settings, world.bodies, world.colliders, i);
-        store.TreeOf(collider).Insert(i, collider.fat);
-        world.outsideFatBounds.Forget(i);
-    });
-    RequeueColliders(world.bodies, world.colliders, body);
-}
-
-// Tells all joints of the body's mechanism, once between two steps.
-void NoteTeleport(WorldState& world, uint32_t body) {
-    constexpr float kSecondsOfTeleport = 5;  // in which a mechanism comes together, see Docs/Joints.md
-    JointStore& store = world.joints;
-    std::vector<uint32_t> bodies{body};
-    while (!bodies.empty()) {
-        const uint32_t from = bodies.back();
-        bodies.pop_back();
-        store.VisitOf(from, [&](uint32_t index) {
-            Joint& joint = store.joints[index];
-            if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
-            store.records[index].secondsOfTeleport = kSecondsOfTeleport;
-            const int other = 1 - joint.SideOf(from);
-            if (!joint.still[other]) bodies.push_back(joint.body[other]);
-        });
-    }
-}
-
-// Brings everything in line with a pose that the user set.
-void Teleported(WorldState& world, uint32_t body) {
-    if (world.joints.HasAny(body)) NoteTeleport(world, body);
-    if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
-    world.bodies.UpdateInertia(body);
-    VisitColliders(world, body, [&](uint32_t i) {
-        SetFatBounds(world.settings, world.bodies, world.colliders, i);
-        const Collider& collider = world.colliders.colliders[i];
-        world.colliders.TreeOf(collider).Update(i, collider.fat);
-        world.outsideFatBounds.Forget(i);
-    });
-    world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.step + 1);
-    RequeueColliders(world.bodies, world.colliders, body);
 }
 
 }  // namespace
@@ -144,7 +81,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     world_.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
     cold.isSensor = settings.isSensor;
     if (settings.reportsContacts) world_.bodies.reportsContacts.Insert(body);
-    FillDynamics(world_.bodies.dynamics[body], settings);
+    FillDynamics(world_.bodies.dynamics[body], cold, settings);
     world_.bodies.SetRadii(body, *settings.shape);
     world_.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
     if (cold.children) {
@@ -154,7 +91,8 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     world_.bodies.SetCenterPose(body, CenterPose(*settings.shape, settings.position, Normalized(settings.rotation)));
     SetVelocityOf(world_, body, settings.linearVelocity, settings.angularVelocity);
     world_.bodies.UpdateInertia(body);
-    if (world_.bodies.Count() == 1) PlaceBoundsOrigin(world_, body);
+    if (world_.bodies.Count() == (world_.bodies.worldBody == BodyStore::kNone ? 1u : 2u))
+        PlaceBoundsOrigin(world_, body);
     MakeColliders(world_, body);
     world_.bodies.MarkPlaced(body);
     if (settings.startAsleep) {
@@ -185,8 +123,7 @@ Status BodyInterface::Remove(BodyId id) {
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
         world_.outsideFatBounds.Forget(i);
-        // It touches nothing from now on. Its pairs are removed with the next step, in one go with those of other
-        // bodies.
+        // Its contacts end now. Its pairs are removed in the next step, together with those of other removed bodies.
         world_.pairs.VisitOf(i, [&](uint32_t pair) {
             for (; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
                 world_.pairs.pairs[pair].touching = false;
@@ -201,26 +138,6 @@ Status BodyInterface::Remove(BodyId id) {
 
 bool BodyInterface::Exists(BodyId id) const { return world_.bodies.Find(id); }
 
-Status BodyInterface::SetPose(BodyId id, const Position& position, const Quaternion& rotation) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    if (MaybeError e = FirstOf(CheckPosition("position", position), CheckRotation("rotation", rotation))) return *e;
-    const uint32_t body = id.index;
-    if (world_.bodies.dynamics[body].frozen) {
-        world_.bodies.dynamics[body].frozen = false;
-        RecolorJointsOf(world_.bodies, world_.joints, world_.coloring, body);
-    }
-    WakeBody(world_, body);
-    WakeNeighbors(world_, body);
-    WakeJoined(world_, body);
-    world_.bodies.SetCenterPose(body,
-                                CenterPose(*world_.bodies.cold[body].shape, position, NormalizedUnlessItIs(rotation)));
-    Teleported(world_, body);
-    WakeNeighbors(world_, body);
-    return Done{};
-}
-
 Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt) {
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Kinematic)
@@ -232,7 +149,10 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
     const Pose goal = CenterPose(*world_.bodies.cold[id.index].shape, position, Normalized(rotation));
     const Vector3 linear = Vector3((goal.position - now.position).cast<float>()) * (1.0f / dt);
     const Vector3 angular = RotationVectorOf(goal.rotation * now.rotation.Conjugate()) * (1.0f / dt);
-    return SetVelocity(id, linear, angular);
+    if (Status status = SetVelocity(id, linear, angular); !status) return status;
+    world_.bodies.cold[id.index].singleMove = SingleMove::Next;
+    world_.bodies.singleMoves.Insert(id.index);
+    return Done{};
 }
 
 Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular) {
@@ -249,6 +169,7 @@ Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector
         RequeueColliders(world_.bodies, world_.colliders, id.index);
     }
     if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0))) WakeJoined(world_, id.index);
+    if (world_.bodies.singleMoves.Erase(id.index)) world_.bodies.cold[id.index].singleMove = SingleMove::None;
     SetVelocityOf(world_, id.index, linear, angular);
     return Done{};
 }
@@ -279,11 +200,13 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque)))
         return *e;
     if (force.isZero(0) && torque.isZero(0)) return Done{};
-    WakeBody(world, id.index);
     BodyCold& cold = world.bodies.cold[id.index];
+    // Under a steady push it may stay asleep: the step checks whether this one is the same.
+    if (!world.bodies.dynamics[id.index].awake && !cold.isSteady) WakeBody(world, id.index);
     cold.force += force;
     cold.torque += torque;
     world.bodies.dynamics[id.index].hasForce = true;
+    world.bodies.pushed.Insert(id.index);
     return Done{};
 }
 
@@ -319,73 +242,6 @@ Status BodyInterface::AddAngularImpulse(BodyId id, const Vector3& impulse) {
 Status BodyInterface::AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point) {
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
     return ApplyImpulse(world_, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
-}
-
-Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    if (MaybeError e = Check(material)) return *e;
-    world_.bodies.cold[id.index].material = material;
-    VisitPairsOf(world_.bodies, world_.colliders, world_.pairs, {&id.index, 1}, [&](uint32_t first) {
-        for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
-            CombineMaterials(world_.bodies, world_.pairs, pair);
-    });
-    WakeBody(world_, id.index);
-    WakeNeighbors(world_, id.index);
-    return Done{};
-}
-
-Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    world_.bodies.SetFilter(id.index, {category, mask, GetGroup(id)});
-    Refilter(world_, id.index);
-    return Done{};
-}
-
-Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    world_.bodies.SetFilter(id.index, {GetCategory(id), GetMask(id), group});
-    Refilter(world_, id.index);
-    return Done{};
-}
-
-Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    if (MaybeError e = CheckRange("gravityFactor", factor, -1e6, 1e6)) return *e;
-    world_.bodies.dynamics[id.index].gravityFactor = factor;
-    WakeBody(world_, id.index);
-    return Done{};
-}
-
-Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    if (MaybeError e = CheckContinuous(continuous, *world_.bodies.cold[id.index].shape)) return *e;
-    constexpr ContinuousCollision kOff = ContinuousCollision::Off;
-    BodyCold& cold = world_.bodies.cold[id.index];
-    if (cold.isSensor && continuous != kOff)
-        return Error{ErrorCode::Unsupported, "a sensor touches nothing, and is not cast"};
-    world_.bodies.continuousCount += (continuous != kOff) - (cold.continuous != kOff);
-    cold.continuous = continuous;
-    world_.bodies.dynamics[id.index].continuous = continuous != kOff;
-    return Done{};
-}
-
-Status BodyInterface::SetReportsContacts(BodyId id, bool reportsContacts) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    if (reportsContacts) world_.bodies.reportsContacts.Insert(id.index);
-    else world_.bodies.reportsContacts.Erase(id.index);
-    return Done{};
 }
 
 Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
@@ -440,7 +296,10 @@ Status BodyInterface::Sleep(BodyId id) {
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "only dynamic bodies sleep"};
-    if (world_.bodies.dynamics[id.index].awake) SleepIslandOf(world_, id.index);
+    if (!world_.bodies.dynamics[id.index].awake) return Done{};
+    SleepIslandOf(world_, id.index);
+    for (const uint32_t body : world_.sleeping.Bodies(world_.bodies.cold[id.index].sleepingIsland))
+        ForgetPush(world_.bodies, body);
     return Done{};
 }
 

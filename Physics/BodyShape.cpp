@@ -1,4 +1,4 @@
-// What BodyInterface does to the shapes of bodies: edits of children, other shapes.
+// The functions of BodyInterface that change shapes: edits of children, SetShape.
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/Validation.h>
@@ -9,7 +9,7 @@ namespace fulcrum {
 
 namespace {
 
-// Takes what the masses follow from: kilograms and the shape's inertia at density 1.
+// Sets mass and inertia from the mass in kg and the shape's mass properties at density 1.
 void ChangeMass(WorldState& world, uint32_t body, const MassProperties& shape, float kilograms) {
     SetMass(world.bodies.dynamics[body], shape.principalAxes, kilograms,
             Vector3(shape.principalInertia * (kilograms / shape.volume)));
@@ -22,7 +22,8 @@ ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& ed
     const Vector3 center = cold.shape->Mass().centerOfMass;
     BodyChildren& children = *cold.children;
     const std::span<const CompoundShape::Child> all = children.compound->Children();
-    const ShapePtr before = edit.index < all.size() ? all[edit.index].shape : nullptr;  // pairs name it still
+    // Kept alive: pairs still refer to it.
+    const ShapePtr before = edit.index < all.size() ? all[edit.index].shape : nullptr;
     WakeBody(world, body);
     const ChildId id = children.compound->Commit(edit);
     world.bodies.SetRadii(body, *cold.shape);
@@ -35,7 +36,7 @@ ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& ed
     return id;
 }
 
-// plan(compound, mass) says what is to be done.
+// plan(compound, mass) returns the edit.
 template <class Plan>
 Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, const Plan& plan) {
     const WorldLock::Exclusive alone(world.lock);
@@ -47,7 +48,7 @@ Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, cons
         return Error{ErrorCode::Unsupported, std::string("the body's shape is a ") + ShapeTypeName(cold.shape->Type()) +
                                                  "; only mutable compounds have children to edit"};
     }
-    // What is not dynamic has no mass that could change, and its center stays where it is.
+    // Static and kinematic bodies have no mass to update, and their center stays in place.
     const bool updates = mass == MassUpdate::Update && world.bodies.dynamics[id.index].motion == MotionType::Dynamic;
     const Result<MutableCompound::Edit> edit = plan(*cold.children->compound, updates ? mass : MassUpdate::Keep);
     if (!edit) return edit.GetError();
@@ -126,8 +127,7 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
     MakeColliders(world_, body);
     if (d.motion == MotionType::Dynamic) world_.bodies.MarkPlaced(body);
     RequeueColliders(world_.bodies, world_.colliders, body);
-    if (!world_.sensors.IsEmpty())
-        world_.sensors.changed.push_back(body);  // also where no collider is left that would tell
+    if (!world_.sensors.IsEmpty()) world_.sensors.changed.push_back(body);  // also if no collider is left to mark it
     WakeNeighbors(world_, body);
     return Done{};
 }

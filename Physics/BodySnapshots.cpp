@@ -1,5 +1,5 @@
-// Snapshots of some bodies: what PhysicsSystem::RestoreBodies does is what its user could do by SetPose and the like,
-// but for the last bits of poses and what joints carry.
+// Snapshots of some bodies. PhysicsSystem::RestoreBodies does what a user could do with SetPose etc., except that poses
+// are bit-exact and the state of joints is restored.
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Physics/Snapshots/SnapshotElements.h>
@@ -12,30 +12,34 @@ namespace fulcrum {
 
 namespace {
 
-// A body as it is saved alone.
+// A body in a snapshot of some bodies.
 struct SavedBody {
     BodyId id;
     uint64_t shape = 0;  // ContentHash
-    Pose center;         // on the grid
+    Pose center;         // rounded to the grid of positions
     Remainder remainder;
     Vector3 linear = Vector3::Zero(), angular = Vector3::Zero(), force = Vector3::Zero(), torque = Vector3::Zero();
     float slowSeconds = 0;
+    BodyPush lastPush;
+    bool isSteady = false;
+    SingleMove singleMove = SingleMove::None;
 };
 
-// How a joint is known again, and what is read of it.
+// Identifies a joint and the size of its state.
 struct SavedJoint {
     JointId id;
-    uint64_t type = 0;   // of kind and settings
-    uint32_t state = 0;  // numbers of State
+    uint64_t type = 0;   // hash of kind and settings
+    uint32_t state = 0;  // size of JointType::State
     uint8_t controls = 0;
     friend bool operator==(const SavedJoint&, const SavedJoint&) = default;
 };
 
 template <class Stream>
 void Visit(Stream& s, SavedBody& body) {
-    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds] = body;
+    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds, lastPush, isSteady, singleMove] =
+        body;
     s(id, shape, center.position, center.rotation, remainder.value, remainder.isGiven, linear, angular, force, torque,
-      slowSeconds);
+      slowSeconds, lastPush.force, lastPush.torque, isSteady, singleMove);
 }
 template <class Stream>
 void Visit(Stream& s, SavedJoint& joint) {
@@ -53,7 +57,10 @@ SavedBody Describe(const BodyStore& bodies, BodyId id) {
             bodies.AngularVelocityOf(id.index),
             cold.force,
             cold.torque,
-            bodies.dynamics[id.index].slowSeconds};
+            bodies.dynamics[id.index].slowSeconds,
+            cold.lastPush,
+            cold.isSteady,
+            cold.singleMove};
 }
 
 SavedJoint Describe(const JointStore& joints, uint32_t index, std::vector<std::byte>& settings) {
@@ -67,7 +74,7 @@ SavedJoint Describe(const JointStore& joints, uint32_t index, std::vector<std::b
     return saved;
 }
 
-// The joints of which both bodies are among these.
+// The joints both of whose bodies are among these.
 std::vector<uint32_t> JointsBetween(const JointStore& joints, std::span<const BodyId> bodies) {
     std::vector<uint32_t> members, found;
     for (const BodyId body : bodies) members.push_back(body.index);
@@ -104,7 +111,8 @@ MaybeError CheckJoints(const JointStore& joints, std::span<const SavedJoint> sav
     return std::nullopt;
 }
 
-// After SetPose and SetVelocity, which wake what is concerned and have its contacts searched: all to the last bit.
+// Restores the remaining state bit-exactly, after SetPose and SetVelocity, which wake bodies and have pairs searched
+// for.
 void Complete(BodyStore& bodies, const SavedBody& saved) {
     const uint32_t i = saved.id.index;
     bodies.SetCenterPose(i, saved.center);
@@ -115,6 +123,11 @@ void Complete(BodyStore& bodies, const SavedBody& saved) {
     bodies.cold[i].torque = saved.torque;
     bodies.dynamics[i].hasForce = !saved.force.isZero(0) || !saved.torque.isZero(0);
     bodies.dynamics[i].slowSeconds = saved.slowSeconds;
+    bodies.cold[i].lastPush = saved.lastPush;
+    bodies.cold[i].isSteady = saved.isSteady;
+    if (bodies.dynamics[i].hasForce || !saved.lastPush.IsZero()) bodies.pushed.Insert(i);
+    bodies.cold[i].singleMove = saved.singleMove;
+    if (saved.singleMove != SingleMove::None) bodies.singleMoves.Insert(i);
 }
 
 }  // namespace
@@ -163,7 +176,7 @@ Status PhysicsSystem::RestoreBodies(std::span<const std::byte> bytes) {
         const Vector3 offset = world_->bodies.cold[body.id.index].shape->Mass().centerOfMass;
         const Position place =
             body.center.position + body.remainder.value - Rotate(body.center.rotation, offset).cast<double>();
-        // Where these are refused (static bodies have no velocity) they do not matter.
+        // Errors are irrelevant: static bodies have no velocity.
         (void)bool(bodies_.SetPose(body.id, place, body.center.rotation));
         (void)bool(bodies_.SetVelocity(body.id, body.linear, body.angular));
     }

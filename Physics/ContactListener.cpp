@@ -3,7 +3,7 @@
 namespace fulcrum {
 
 Position ContactView::Center() const {
-    // As an offset from the first: sums of positions far out would lose digits.
+    // Averages offsets from the first point: sums of large positions would lose digits.
     Position offset = Position::Zero();
     for (const Point& point : points) offset += point.position - points.front().position;
     return points.front().position + offset / static_cast<double>(points.size());
@@ -13,11 +13,11 @@ void ContactChange::MoveSurface(const ContactView& contact, BodyId belt, const V
     surfaceVelocity += belt == contact.bodyB ? velocity : Vector3(-velocity);
 }
 
-void ContactChange::TurnSurface(const ContactView& contact, BodyId belt, const Position& pivot,
-                                const Vector3& angularVelocity) {
+void ContactChange::RotateSurface(const ContactView& contact, BodyId belt, const Position& pivot,
+                                  const Vector3& angularVelocity) {
     const Vector3 arm = (contact.Center() - pivot).cast<float>();
     MoveSurface(contact, belt, Cross<float>(angularVelocity, arm));
-    surfaceTurn += belt == contact.bodyB ? angularVelocity : Vector3(-angularVelocity);
+    surfaceAngularVelocity += belt == contact.bodyB ? angularVelocity : Vector3(-angularVelocity);
 }
 
 void ContactChange::ScaleInverseMass(const ContactView& contact, BodyId body, float scale) {

@@ -1,5 +1,5 @@
-// Which bodies of a group collide with one another: the parts of a machine that overlap, a ragdoll's limbs. A filter is
-// shared by the bodies that name it in BodySettings::group; it never changes, so any thread may ask it.
+// Collision filter within a group of bodies: overlapping parts of a machine, limbs of a ragdoll. Shared by the bodies
+// that refer to it in BodySettings::group. Immutable, so any thread may call it.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -12,29 +12,29 @@
 
 namespace fulcrum {
 
-// Decides about two bodies only if the groups of both name this filter object.
+// Called for two bodies only if the groups of both refer to this filter object.
 class GroupFilter {
 public:
     struct Member {
-        uint32_t group = 0;     // for GroupFilterTable: e.g. which ragdoll
-        uint32_t subGroup = 0;  // and which of its parts
+        uint32_t group = 0;     // for GroupFilterTable: e.g. index of the ragdoll
+        uint32_t subGroup = 0;  // and index of the part
     };
 
     virtual ~GroupFilter() = default;
-    // Asked from several threads at once when two bodies come near: a pure function of its arguments, the same for (b,
-    // a).
+    // Called from several threads at once when the bounds of two bodies begin to overlap. Must be a pure function of
+    // its arguments, symmetric in a and b.
     virtual bool Collides(const Member& a, const Member& b) const = 0;
-    // By which snapshots (Snapshot.h) know the filter again: the same for filters that decide the same, and another for
-    // others. 0: all filters of the class do, as far as snapshots are concerned.
+    // Identifies the filter in snapshots (Snapshot.h): equal for filters that decide alike, different for others. 0:
+    // snapshots treat all filters of the class as equal.
     virtual uint64_t ContentHash() const { return 0; }
 };
 
-// Pairs of subgroups that do not collide within one group. All other subgroups collide, and so do members of different
-// groups.
+// Pairs of subgroups that do not collide within one group. All other subgroups, and members of different groups,
+// collide.
 class GroupFilterTable final : public GroupFilter {
 public:
     struct Pair {
-        uint32_t first, second;  // subgroups, 0..1023; the same twice: its members pass through each other
+        uint32_t first, second;  // subgroups, 0..1023; twice the same: its members do not collide with each other
     };
     static constexpr uint32_t kMaxSubGroups = 1024;
 
@@ -48,13 +48,13 @@ public:
 private:
     GroupFilterTable() = default;
 
-    uint32_t subGroups_ = 0;   // that the table has
-    std::vector<bool> apart_;  // by first * subGroups_ + second, both ways round
+    uint32_t subGroups_ = 0;   // number of subgroups in the table
+    std::vector<bool> apart_;  // by first * subGroups_ + second, symmetric
 };
 
 // A body's place in a group.
 struct CollisionGroup {
-    std::shared_ptr<const GroupFilter> filter;  // null: no group, whatever the numbers
+    std::shared_ptr<const GroupFilter> filter;  // null: no group
     uint32_t group = 0, subGroup = 0;           // of GroupFilter::Member
 };
 

@@ -1,8 +1,10 @@
 #include <Fulcrum/Physics/JointInterface.h>
 
+#include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
+#include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
 
 #include <algorithm>
@@ -19,7 +21,7 @@ Error Unknown(JointId id) {
 
 MaybeError CheckBodies(const WorldState& world, const JointSettings& settings) {
     const auto check = [&](const char* field, BodyId id) -> MaybeError {
-        if (world.bodies.Find(id)) return std::nullopt;
+        if (id == kWorldBody || world.bodies.Find(id)) return std::nullopt;
         return Error{ErrorCode::UnknownId, std::string(field) + ": no body has the id (index " +
                                                std::to_string(id.index) + ", generation " +
                                                std::to_string(id.generation) + ")"};
@@ -27,13 +29,15 @@ MaybeError CheckBodies(const WorldState& world, const JointSettings& settings) {
     if (MaybeError e = FirstOf(check("bodyA", settings.bodyA), check("bodyB", settings.bodyB))) return e;
     if (settings.bodyA == settings.bodyB)
         return Error{ErrorCode::Unsupported, "bodyA and bodyB are the same; a joint needs two bodies"};
-    const auto isDynamic = [&](BodyId id) { return world.bodies.dynamics[id.index].motion == MotionType::Dynamic; };
+    const auto isDynamic = [&](BodyId id) {
+        return id != kWorldBody && world.bodies.dynamics[id.index].motion == MotionType::Dynamic;
+    };
     if (!isDynamic(settings.bodyA) && !isDynamic(settings.bodyB))
         return Error{ErrorCode::Unsupported, "bodyA and bodyB are both not dynamic; a joint needs one that moves"};
     return std::nullopt;
 }
 
-// A place and a frame, in the world or in a body's center frame.
+// A point and a rotation, in the world or in a body's center frame.
 struct Frame {
     Vector3 point;  // m, in the center frame
     Quaternion rotation;
@@ -42,7 +46,7 @@ struct Frame {
 Frame FrameOf(const WorldState& world, uint32_t body, const JointAnchor& anchor, JointSpace space) {
     const Pose center = world.bodies.CenterPoseOf(body);
     const Quaternion rotation = RotationOf(anchor);
-    if (space == JointSpace::World)
+    if (space == JointSpace::World || body == world.bodies.worldBody)
         return {center.InverseTransform(OnGrid(anchor.point)), center.rotation.Conjugate() * rotation};
     const Vector3 offset = world.bodies.cold[body].shape->Mass().centerOfMass;
     return {Vector3(anchor.point.cast<float>()) - offset, rotation};
@@ -53,7 +57,8 @@ Pose WorldFrameOf(const WorldState& world, uint32_t body, const Frame& frame) {
     return {center.Transform(frame.point), center.rotation * frame.rotation};
 }
 
-// The frames of a joint: B's is where A's is in the world unless it is given; a normal that is left out follows A's.
+// The frames of a joint. If B's is not given, it coincides with A's in the world; if only its normal is missing, it is
+// derived from A's.
 std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s) {
     const Frame a = FrameOf(world, s.bodyA.index, s.anchorA, s.space);
     const Pose pose = WorldFrameOf(world, s.bodyA.index, a);
@@ -85,7 +90,7 @@ Frame Read(const float (&anchor)[3], const float (&frame)[4]) {
     return {Vector3(anchor[0], anchor[1], anchor[2]), {frame[0], frame[1], frame[2], frame[3]}};
 }
 
-// The bodies as they stand, without velocities.
+// The current poses of the bodies, with zero velocities.
 JointPose PoseOf(const WorldState& world, uint32_t index) {
     const Joint& joint = world.joints.joints[index];
     const JointRecord& record = world.joints.records[index];
@@ -105,16 +110,41 @@ JointPose PoseOf(const WorldState& world, uint32_t index) {
     return pose;
 }
 
+// Static, without a shape, near the first body, where floats are precise.
+void AddWorldBody(WorldState& world) {
+    BodyStore& bodies = world.bodies;
+    const uint32_t body = bodies.worldBody = bodies.Allocate();
+    bodies.cold[body].isWorld = true;
+    SetShapeOf(world, body, EmptyShape::Create());
+    bodies.SetRadii(body, *bodies.cold[body].shape);
+    bodies.SetCenterPose(body, {world.colliders.boundsOrigin, {}});
+    bodies.UpdateInertia(body);
+    MakeColliders(world, body);
+}
+
+// The index of a body in valid settings. The body of the world is created when it is first needed.
+uint32_t IndexOf(WorldState& world, BodyId id) {
+    if (id != kWorldBody) return id.index;
+    if (world.bodies.worldBody == BodyStore::kNone) AddWorldBody(world);
+    return world.bodies.worldBody;
+}
+
+BodyId IdOf(const WorldState& world, uint32_t body) {
+    return body == world.bodies.worldBody ? kWorldBody : world.bodies.IdOf(body);
+}
+
 }  // namespace
 
-Result<JointId> JointInterface::Add(const JointSettings& s, std::unique_ptr<JointType> type) {
+Result<JointId> JointInterface::Add(const JointSettings& settings, std::unique_ptr<JointType> type) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();
+    JointSettings s = settings;
+    for (BodyId* body : {&s.bodyA, &s.bodyB}) body->index = IndexOf(world_, *body);
     const uint32_t index = world_.joints.Allocate();
     Joint& joint = world_.joints.joints[index];
     joint.body[0] = s.bodyA.index;
     joint.body[1] = s.bodyB.index;
-    for (int side = 0; side < 2; ++side) joint.still[side] = !world_.bodies.CanMove(joint.body[side]);
+    for (int side = 0; side < 2; ++side) joint.fixed[side] = !world_.bodies.CanMove(joint.body[side]);
     joint.collideConnected = s.collideConnected;
     joint.priority = s.priority;
     joint.breakForce = s.breakForce;
@@ -153,6 +183,40 @@ Result<JointId> JointInterface::Create(const Settings& settings) {
 FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
+Result<JointId> JointInterface::CreateTarget(const TargetJointSettings& s) {
+    if (MaybeError error = FirstOf(CheckPosition("anchor", s.anchor), CheckPosition("target", s.target),
+                                   CheckSpring("spring", s.spring)))
+        return *error;
+    if (!(s.maxForce > 0)) return Error{ErrorCode::NonPositive, "maxForce must be larger than 0"};
+    SixDofJointSettings joint;
+    joint.bodyA = kWorldBody;
+    joint.bodyB = s.body;
+    joint.anchorA.point = s.target;
+    joint.anchorB = JointAnchor{.point = s.anchor};
+    joint.collideConnected = s.collideConnected;
+    joint.userData = s.userData;
+    for (size_t k = 0; k < 3; ++k)
+        joint.axes[k].motor = {
+            .mode = MotorMode::ToPosition, .spring = s.spring, .minForce = -s.maxForce, .maxForce = s.maxForce};
+    return Create(joint);
+}
+
+Status JointInterface::SetTarget(JointId id, const Position& target) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    if (!Exists(id)) return Unknown(id);
+    if (MaybeError error = CheckPosition("target", target)) return *error;
+    const Joint& joint = world_.joints.joints[id.index];
+    if (joint.body[0] != world_.bodies.worldBody)
+        return Error{ErrorCode::Unsupported, "the joint's body A is not the world; its anchor there cannot be moved"};
+    float(&anchor)[3] = world_.joints.records[id.index].anchorA;
+    const Vector3 point = world_.bodies.CenterPoseOf(joint.body[0]).InverseTransform(OnGrid(target));
+    const bool isSame = point == Vector3(anchor[0], anchor[1], anchor[2]);
+    for (int k = 0; k < 3; ++k) anchor[k] = point[k];
+    if (joint.enabled && !isSame) WakeBodiesOf(world_, joint);
+    return Done{};
+}
+
 Status JointInterface::Remove(JointId id) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();
@@ -179,7 +243,7 @@ AxisControl* JointInterface::ControlOf(JointId id, JointAxis axis) const {
 
 namespace {
 
-// Of a type that may have no rows any more: the Store stage passes it over.
+// Clears the stored row impulses, for a type that may have no rows anymore: the Store stage skips it.
 void ForgetRows(JointType& type) {
     type.impulses.fill(0.0f);
     type.forces.fill(0.0f);
@@ -322,10 +386,10 @@ Pose JointInterface::GetFrameB(JointId id) const {
     return WorldFrameOf(world_, world_.joints.joints[id.index].body[1], Read(record.anchorB, record.frameB));
 }
 BodyId JointInterface::GetBodyA(JointId id) const {
-    return Exists(id) ? world_.bodies.IdOf(world_.joints.joints[id.index].body[0]) : BodyId{};
+    return Exists(id) ? IdOf(world_, world_.joints.joints[id.index].body[0]) : BodyId{};
 }
 BodyId JointInterface::GetBodyB(JointId id) const {
-    return Exists(id) ? world_.bodies.IdOf(world_.joints.joints[id.index].body[1]) : BodyId{};
+    return Exists(id) ? IdOf(world_, world_.joints.joints[id.index].body[1]) : BodyId{};
 }
 uint64_t JointInterface::GetUserData(JointId id) const {
     return Exists(id) ? world_.joints.joints[id.index].userData : 0;
@@ -345,8 +409,9 @@ void JointInterface::Visit(FunctionRef<void(JointId)> visit) const {
 }
 
 void JointInterface::VisitOf(BodyId body, FunctionRef<void(JointId)> visit) const {
-    if (world_.bodies.Find(body))
-        world_.joints.VisitOf(body.index, [&](uint32_t index) { visit(world_.joints.IdOf(index)); });
+    const uint32_t index = body == kWorldBody ? world_.bodies.worldBody : body.index;
+    if (body == kWorldBody || world_.bodies.Find(body))
+        world_.joints.VisitOf(index, [&](uint32_t joint) { visit(world_.joints.IdOf(joint)); });
 }
 
 }  // namespace fulcrum

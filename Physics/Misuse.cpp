@@ -1,21 +1,21 @@
 #include <Fulcrum/Physics/Misuse.h>
 
 #include <atomic>
-#include <cstdio>
+#include <cstdint>
 
 namespace fulcrum {
 
 namespace {
 
-// A listener that queries would fill a disk with the same line.
+// Limits the output: a listener that queries in every callback would fill the disk.
 constexpr uint32_t kMostPrinted = 100;
 
 void Print(const Error& error) {
     static std::atomic<uint32_t> printed{0};
     const uint32_t before = printed.fetch_add(1, std::memory_order_relaxed);
     if (before >= kMostPrinted) return;
-    std::fprintf(stderr, "fulcrum: %s%s\n", error.message.c_str(),
-                 before + 1 == kMostPrinted ? " (no more such errors are printed)" : "");
+    const char* end = before + 1 == kMostPrinted ? " (no more such errors are printed)" : "";
+    Log(LogLevel::Warning, (error.message + end).c_str());
 }
 
 std::atomic<MisuseHandler> theHandler{nullptr};

@@ -6,6 +6,7 @@
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/Step.h>
 #include <Fulcrum/Physics/Validation.h>
+#include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Filters.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
 
@@ -70,13 +71,14 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
     const std::array<uint32_t, 32> before = world_->settings.layerCollides;
-    // What one method notes of a pair means nothing to the other.
+    // The pair caches of one method are invalid for the other.
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
     const AccuracyTarget target = world_->settings.accuracy;
     const bool hadBodyEvents = world_->settings.events.bodies;
     world_->settings = settings;
-    // Efforts of islands follow the settings, and what is solved as a tree; loads are parts of what they may be.
+    // The efforts of islands, the choice of trees and the loads, which are relative to their limits, depend on the
+    // settings.
     world_->coloring.Invalidate();
     if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
     if (settings.accuracy.jointError != target.jointError) std::ranges::fill(world_->joints.gaps, LoadLevel{});
@@ -92,6 +94,12 @@ void PhysicsSystem::SetContactListener(const ContactListener* listener) {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
     ChangeListener(*world_, listener);
+}
+
+void PhysicsSystem::SetStepObserver(StepObserver* observer) {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
+    world_->observer = observer;
 }
 
 Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
@@ -115,16 +123,27 @@ uint64_t PhysicsSystem::HashState() const {
 void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
     const BodyStore& bodies = world_->bodies;
     for (uint32_t i = 0; i < bodies.Size(); ++i)
-        if (bodies.cold[i].exists) visit(bodies.IdOf(i));
+        if (bodies.cold[i].exists && i != bodies.worldBody) visit(bodies.IdOf(i));
+}
+
+static void VisitContact(const WorldState& world, uint32_t index, FunctionRef<void(const ContactView&)> visit) {
+    const Pair& pair = world.pairs.pairs[index];
+    if (!pair.touching || pair.pointCount == 0 || pair.onSeam || !world.pairs.active.Contains(index)) return;
+    ContactView::Point room[ContactRecord::kMaxPoints];
+    visit(ViewSolvedContact(world.bodies, world.colliders, world.pairs, index, room));
 }
 
 void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) const {
     const WorldState& world = *world_;
-    world.pairs.active.Visit([&](uint32_t index) {
-        const Pair& pair = world.pairs.pairs[index];
-        if (!pair.touching || pair.pointCount == 0 || pair.onSeam) return;
-        ContactView::Point room[ContactRecord::kMaxPoints];
-        visit(ViewSolvedContact(world.bodies, world.colliders, world.pairs, index, room));
+    world.pairs.active.Visit([&](uint32_t index) { VisitContact(world, index, visit); });
+}
+
+void PhysicsSystem::VisitContactsOf(BodyId body, FunctionRef<void(const ContactView&)> visit) const {
+    const WorldState& world = *world_;
+    if (!world.bodies.Find(body)) return;
+    VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body.index, 1}, [&](uint32_t first) {
+        for (uint32_t index = first; index != PairStore::kNone; index = world.pairs.pairs[index].more)
+            VisitContact(world, index, visit);
     });
 }
 
@@ -137,9 +156,9 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
         if (pair.touching && !pair.fixedB) sets.Unite(pair.bodyA, pair.bodyB);
     });
     for (const Joint& joint : world_->joints.joints)
-        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])
+        if (joint.exists && joint.enabled && !joint.fixed[0] && !joint.fixed[1])
             sets.Unite(joint.body[0], joint.body[1]);
-    // Sleepers belong together as they fell asleep.
+    // Sleeping bodies form the islands in which they fell asleep.
     std::vector<uint32_t> first(bodies.Size(), ~0u);
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
         const uint32_t island = bodies.cold[i].sleepingIsland;
@@ -157,11 +176,11 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
 
 double PhysicsSystem::GetEnergy() const {
     double energy = 0;
-    const Position gravity = world_->settings.gravity.cast<double>();
     const BodyStore& bodies = world_->bodies;
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
         if (!bodies.cold[i].exists || bodies.dynamics[i].motion != MotionType::Dynamic) continue;
         const BodyId id = bodies.IdOf(i);
+        const Position gravity = bodies.GravityOf(i, world_->settings.gravity).cast<double>();
         energy += bodies_.GetKineticEnergy(id) - double(bodies_.GetMass(id)) *
                                                      double(bodies.dynamics[i].gravityFactor) *
                                                      Dot<double>(gravity, bodies.CenterOf(i));

@@ -1,5 +1,5 @@
-// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once a frame. One thread at a time
-// changes it; Queries() may be asked by any number of threads at any time.
+// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once per frame. Only one thread at a
+// time may change it; Queries() may be used by any number of threads at any time.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -10,6 +10,7 @@
 #include <Fulcrum/Physics/SensorEvent.h>
 #include <Fulcrum/Physics/Snapshot.h>
 #include <Fulcrum/Physics/StepEvents.h>
+#include <Fulcrum/Physics/StepObserver.h>
 #include <Fulcrum/Physics/StepReport.h>
 
 #include <memory>
@@ -30,8 +31,8 @@ public:
     PhysicsSystem(const PhysicsSystem&) = delete;
     PhysicsSystem& operator=(const PhysicsSystem&) = delete;
 
-    // Advances by dt seconds, 0 .. 1; less than a nanosecond changes nothing. Errors: NonFinite, OutOfRange: nothing
-    // has happened then.
+    // Advances the world by dt seconds, 0..1; less than a nanosecond has no effect. Errors: NonFinite, OutOfRange; then
+    // nothing has changed.
     Status Update(double dt);
 
     BodyInterface& Bodies() { return bodies_; }
@@ -40,58 +41,64 @@ public:
     const JointInterface& Joints() const { return joints_; }
     const QueryInterface& Queries() const { return queries_; }
     const StepReport& Report() const;
-    // Contacts, bodies, broken joints: what happened in the last step, as far as Settings().events asks for it. Valid
-    // until the next. Not to be asked in what a step calls back: that is reported (Misuse.h), and there is nothing.
+    // Events of the last step: contacts, bodies, broken joints, as enabled in Settings().events. Valid until the next
+    // step. Must not be called from callbacks of a step: that is reported (Misuse.h), and the events are empty.
     const StepEvents& Events() const;
-    // What sensors saw in the last step, sorted by sensor, time, body. Valid until the next.
+    // Events of sensors in the last step, sorted by sensor, time, body. Valid until the next step.
     std::span<const SensorEvent> SensorEvents() const;
-    // What was inside a sensor when the last step ended, sorted; bodies removed since then are among them. Valid until
-    // the next step and until a sensor is created. Empty for what is no sensor.
+    // The bodies inside a sensor at the end of the last step, sorted; bodies removed since then are included. Valid
+    // until the next step or the creation of a sensor. Empty if the body is no sensor.
     std::span<const BodyId> BodiesInside(BodyId sensor) const;
     const SystemSettings& Settings() const;
-    // As for Create. Takes effect at the next step. Where layerCollides changes, contacts that no longer may be end,
-    // those that now may be are found, and the bodies of these layers wake.
+    // Errors as for Create. Takes effect at the next step. If layerCollides changes, contacts that it forbids end, new
+    // ones are searched for, and the bodies of these layers wake.
     Status SetSettings(const SystemSettings& settings);
-    // Asks it about contacts from now on (not owned, must outlive its use); null: nobody. Pairs that exist are asked
-    // about again, and bodies wake whose contact it forbids.
+    // Sets the contact listener (not owned, must outlive its use); null: none. Existing pairs are checked again, and
+    // bodies whose contact it forbids wake.
     void SetContactListener(const ContactListener* listener);
+
+    // The observer of steps and their stages from now on (not owned, must outlive its use); null: none. Not part of
+    // snapshots.
+    void SetStepObserver(StepObserver* observer);
 
     // The whole state as bytes, from which steps go on with the same bits: `bytes` are overwritten, and allocated anew
     // only where they do not suffice. Shapes, group filters and what joints of one's own are made of are named, not
     // contained. Error: Unsupported (a body's mutable compound has a custom child); `bytes` are empty then.
     Status SaveSnapshot(std::vector<std::byte>& bytes) const;
-    // Back to the state of a snapshot of this world, or of another one with the same calls before it: settings, bodies,
-    // joints and their ids are as they were then. The report is still that of the last step. Errors, after which
-    // nothing has changed: Unsupported (no snapshot; another version or build; a contact listener is set where none
-    // was, or the other way round), Degenerate (damaged), UnknownId (what it names is neither in the world nor given).
-    // Bytes that were forged are not noticed: load only what you trust.
+    // Restores a snapshot of this world, or of another one: settings, bodies, joints and their ids become those of the
+    // snapshot. Report() stays that of the last step. Errors, which leave the world unchanged: Unsupported (not a
+    // snapshot; another version or build; a contact listener is set now but was not then, or vice versa), Degenerate
+    // (damaged), UnknownId (a referenced object is neither in the world nor in `sources`). Deliberately forged data are
+    // not detected: load only trusted data.
     Status RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources = {});
-    // Some bodies alone, and the joints between them: poses, velocities, forces that wait for the next step, how long
-    // they have been slow; what joints carry, their limits and motors. Error: UnknownId.
+    // Saves only some bodies and the joints between them: poses, velocities, forces for the next step, sleep timers;
+    // impulses, limits and motors of joints. Error: UnknownId.
     Status SaveBodies(std::span<const BodyId> bodies, std::vector<std::byte>& bytes) const;
-    // Puts them back there, awake; all else stays as it is. Contacts begin anew, as after SetPose, so that what follows
-    // is not the same to the last bit. Errors, after which nothing has changed: Unsupported and Degenerate as above;
-    // UnknownId (one of the bodies or joints does not exist), Unsupported also where a body has another shape since, or
-    // a joint another type.
+    // Restores them, awake; everything else is unchanged. Contacts begin anew, as after SetPose, so later steps are not
+    // bit-identical to the original ones. Errors, which leave the world unchanged: Unsupported and Degenerate as above;
+    // UnknownId (one of the bodies or joints does not exist); Unsupported also if a body has another shape or a joint
+    // another type than when saved.
     Status RestoreBodies(std::span<const std::byte> bytes);
-    // A hash, 64 bits, of the whole state but for user data: equal hashes mean that the same calls give the same bits
-    // from now on. The same for any number of threads and lanes. 0 where it is called back by a step.
+    // 64-bit hash of the whole state except user data: if it is equal, the same calls give the same bits from now on.
+    // Independent of the number of threads and lanes. 0 if called from callbacks of a step.
     uint64_t HashState() const;
 
-    // All bodies, in the order of their indices.
+    // Visits all bodies, in the order of their indices.
     void VisitBodies(FunctionRef<void(BodyId)> visit) const;
-    // All awake contacts with at least one point as they were solved in the last step, in a deterministic order; those
-    // that are only near are among them.
+    // Visits all awake contacts with at least one point, as solved in the last step, in a deterministic order. Includes
+    // speculative contacts.
     void VisitContacts(FunctionRef<void(const ContactView&)> visit) const;
+    // The contacts of one body, by pair; none for an unknown id.
+    void VisitContactsOf(BodyId body, FunctionRef<void(const ContactView&)> visit) const;
     // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
-    // index. Found anew by this call: for viewers and tests.
+    // index. Computed by this call: for viewers and tests.
     void VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const;
     // Kinetic plus gravitational potential energy of the dynamic bodies, J; the potential is zero at the world's
     // origin.
     double GetEnergy() const;
     // FNV-1a, 64 bits, of all bodies' poses (position, rotation x y z w as doubles) in the order of their indices.
     uint64_t HashPoses() const;
-    // Bytes held by the system, all buffers included.
+    // Bytes allocated by the system, all buffers included.
     size_t MemoryUsed() const;
 
 private:

@@ -1,5 +1,5 @@
-// Batches of queries over the world's job system. Each item is the single query, so that the answers are the same bits;
-// the thread that asks holds the world for all of them.
+// Batches of queries on the world's job system. Each item runs the single query, so results are bit-identical; the
+// calling thread holds the world's lock for all of them.
 #include <Fulcrum/Physics/Queries/RayOrder.h>
 #include <Fulcrum/Physics/Queries/RaySearch.h>
 #include <Fulcrum/Physics/QueryInterface.h>
@@ -9,7 +9,7 @@
 namespace fulcrum {
 
 namespace {
-// Enough for a job to be worth its while: a few microseconds.
+// Enough to amortize the overhead of a job: a few microseconds.
 constexpr uint32_t kRaysPerJob = 64;
 constexpr uint32_t kShapesPerJob = 8;
 
@@ -38,7 +38,7 @@ void QueryInterface::CastRays(std::span<const Ray> rays, std::span<WorldRayHit> 
     const QueryScope scope(world_);
     if (!scope) return std::fill_n(hits.begin(), rays.size(), WorldRayHit{}), void();
     const ColliderSearch search(world_, filter);
-    // Taken for as long as it is in use: what a query calls back may query, too.
+    // Moved out while in use, because callbacks of a query may run queries, too.
     thread_local RayOrder kept;
     RayOrder order = std::move(kept);
     constexpr uint32_t kRays = RayCaster::kMostRays;
@@ -51,7 +51,7 @@ void QueryInterface::CastRays(std::span<const Ray> rays, std::span<WorldRayHit> 
     };
     world_.jobs->ParallelFor((count + kRays - 1) / kRays, kRaysPerJob / kRays, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {
-            // Rays that lie close together are far apart in memory.
+            // Prefetch: rays that are close in space are far apart in memory.
             for (const uint32_t number : packetOf(i + 1)) {
                 Prefetch(rays[number]);
                 Prefetch(hits[number]);

@@ -31,7 +31,7 @@ bool IsGiven(const Shape* shape) {
 
 bool IsUsable(const Pose& pose) { return IsFinite(pose.position) && IsFinite(pose.rotation); }
 
-// Where the fractions are equal, the deepest first.
+// For equal fractions, the deepest first.
 template <class Hit>
 bool ComesFirst(const Hit& a, const Hit& b) {
     if constexpr (requires { a.depth; }) {
@@ -47,7 +47,7 @@ void SortHits(std::vector<Hit>& hits) {
     std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return ComesFirst(a, b); });
 }
 
-// What the trees hold is measured from this.
+// Bounds in the trees are relative to this origin.
 const Position& OriginOf(const WorldState& world) { return world.colliders.boundsOrigin; }
 
 TreeRay SweptBounds(const WorldState& world, const ShapeCaster& caster, const Pose& pose, const Vector3& displacement,
@@ -262,7 +262,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
                    if (!isCloser) return;
                    best = found;
                    bestCollider = collider;
-                   limit = std::max(best.distance, 0.0f);  // what overlaps is looked at to the end
+                   limit = std::max(best.distance, 0.0f);  // overlapping bodies are all tested, for the deepest
                });
     if (bestCollider == ~0u) return false;
     const Pose at = search.PoseOf(bestCollider);

@@ -1,4 +1,4 @@
-// What a sensor reports: which body came in, stayed, or left. From PhysicsSystem::SensorEvents.
+// Events of sensors: a body entered, stayed or left. From PhysicsSystem::SensorEvents.
 #pragma once
 
 #include <Fulcrum/Physics/Settings.h>
@@ -7,13 +7,13 @@ namespace fulcrum {
 
 struct SensorEvent {
     enum class Kind : uint8_t {
-        Begin,  // it came to overlap the sensor
-        Stay,   // it was inside when the step began and when it ended
-        End,    // it overlaps it no longer, or is no longer seen; or the body or the sensor was removed
+        Begin,  // it began to overlap the sensor
+        Stay,   // it was inside at the start and at the end of the step
+        End,    // it no longer overlaps the sensor or passes its filter; or the body or the sensor was removed
     };
     BodyId sensor, body;
     Kind kind = Kind::Begin;
-    float time = 0;  // 0 .. 1, of the step; 1 for Stay; 0 for what changed between two steps
+    float time = 0;  // fraction of the step, 0..1; 1 for Stay; 0 for changes between two steps
     friend bool operator==(const SensorEvent&, const SensorEvent&) = default;
 };
 

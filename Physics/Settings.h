@@ -1,4 +1,4 @@
-// What a user sets: the system, the solver, a body. Every default works; every field says its unit and range.
+// Settings of the system, the solver and bodies. All defaults work; every field states its unit and range.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -12,7 +12,7 @@
 
 namespace fulcrum {
 
-// Names a body. Ids of removed bodies are never valid again: an index is reused with another generation.
+// Identifies a body. Ids of removed bodies never become valid again: an index is reused with another generation.
 struct BodyId {
     uint32_t index = 0xFFFFFFFFu;
     uint32_t generation = 0;
@@ -21,11 +21,11 @@ struct BodyId {
 
 enum class MotionType : uint8_t {
     Static,     // never moves
-    Kinematic,  // moves with the velocity that it is given, pushed by nothing
+    Kinematic,  // moves with the velocity set by the user, not affected by forces or contacts
     Dynamic,    // moved by forces, contacts and joints
 };
 
-// How the coefficients of two touching bodies make one. Where their rules differ the later one in this list wins.
+// How the coefficients of two touching bodies are combined. If their rules differ, the later one in this list is used.
 enum class CombineRule : uint8_t { GeometricMean, Average, Minimum, Multiply, Maximum };
 
 struct Material {
@@ -35,12 +35,12 @@ struct Material {
     CombineRule restitutionRule = CombineRule::Maximum;
 };
 
-// Whether a body is cast along its path in steps in which it moves or turns by more than half its thickness, so that it
-// passes through nothing however fast it is. It bounces where it hits, in the middle of the step.
+// Continuous collision: whether a body is cast along its path in steps in which it moves or rotates by more than half
+// its thickness, so that it cannot tunnel at any speed. A hit is resolved at its time within the step.
 enum class ContinuousCollision : uint8_t {
     Off,
-    Linear,            // small turns within a step are left out of the cast; not of compounds
-    LinearAndAngular,  // all are part of it
+    Linear,            // small rotations within a step are ignored by the cast; not for compounds
+    LinearAndAngular,  // all rotations are part of the cast
 };
 
 // Which bodies a sensor reports; combine with |.
@@ -49,8 +49,8 @@ enum class SensorSees : uint8_t {
     Dynamic = 1,
     Kinematic = 2,
     Static = 4,
-    Sleeping = 8,  // dynamic ones that sleep, too; else they leave as they fall asleep
-    Sensors = 16,  // other sensors, too, of the kinds of motion chosen
+    Sleeping = 8,  // sleeping dynamic bodies, too; else they leave when they fall asleep
+    Sensors = 16,  // other sensors, too, of the selected motion types
     Default = Dynamic | Kinematic | Sleeping,
     All = 31,
 };
@@ -71,34 +71,35 @@ enum class LockedAxes : uint8_t {
     RotationY = 16,
     RotationZ = 32,
     Rotation = 8 | 16 | 32,
-    Plane2D = 4 | 8 | 16,  // moves in the x-y plane, turns about z
+    Plane2D = 4 | 8 | 16,  // moves in the x-y plane, rotates about z
 };
 constexpr LockedAxes operator|(LockedAxes a, LockedAxes b) {
     return static_cast<LockedAxes>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
 }
 
-// How overlaps and gaps of joints are corrected. Docs/Accuracy.md says which suits which effort.
+// How contact overlaps and joint errors are corrected. Docs/Accuracy.md says which suits which effort.
 enum class PositionCorrection : uint8_t {
-    SoftRelax,  // soft rows push in the velocity iterations; relaxing passes take the speed of the pushes out again
-    Baumgarte,  // hard rows; position passes move the bodies and add no speed. Small gaps of joints
+    SoftRelax,  // soft rows in the velocity iterations; relax iterations remove the correction velocity
+    Baumgarte,  // hard rows; position iterations correct poses and add no velocity. Smallest joint errors
 };
 
-// The trade of speed for accuracy.
+// Solver effort: trades speed for accuracy.
 struct SolverSettings {
     int substeps = 4;            // 1..64; each integrates dt / substeps
     int velocityIterations = 1;  // 1..255 per substep
-    int positionIterations = 1;  // 0..255 per substep: relaxing passes, or position passes
+    int positionIterations = 1;  // 0..255 per substep: relax iterations (SoftRelax) or position iterations (Baumgarte)
     PositionCorrection positionCorrection = PositionCorrection::SoftRelax;
-    // Of Baumgarte: the part of an error that a position pass corrects, > 0, at most 1; and the overlap that it leaves,
-    // m, 0..1000, so that what rests keeps its contacts: without any, walls creep sideways.
+    // For Baumgarte: fraction of the error that a position iteration corrects, > 0, at most 1; and the overlap that it
+    // leaves, m, 0..1000, so that resting contacts persist: without any, walls creep sideways.
     float baumgarte = 0.2f;
     float baumgarteSlop = 0.001f;
 
-    // Presets; errors fall with the square of the substeps. Docs/Accuracy.md says which structures stand with which.
+    // Presets; errors decrease with the square of the substeps. Docs/Accuracy.md says which structures are stable with
+    // which.
     static constexpr SolverSettings Fast() { return {.substeps = 2}; }
     static constexpr SolverSettings Balanced() { return {}; }  // the default
     static constexpr SolverSettings Accurate() { return {.substeps = 16}; }
-    static constexpr SolverSettings Reference() {  // structures obey statics within 3 %
+    static constexpr SolverSettings Reference() {  // contact forces of structures match statics within 3 %
         return {.substeps = 64, .velocityIterations = 4, .positionIterations = 4};
     }
     friend bool operator==(const SolverSettings&, const SolverSettings&) = default;
@@ -107,11 +108,11 @@ struct SolverSettings {
 struct BodySettings {
     ShapePtr shape;
     MotionType motion = MotionType::Dynamic;
-    Position position = Position::Zero();       // m, of the shape's own origin; 1e18 along an axis at most
+    Position position = Position::Zero();       // m, of the shape's own origin; at most 1e18 per axis
     Quaternion rotation{};                      // unit within 1e-3; normalized exactly
-    Vector3 linearVelocity = Vector3::Zero();   // m/s, of the center of mass; beyond 3e8 counts as that
-    Vector3 angularVelocity = Vector3::Zero();  // rad/s, world axes; beyond 1e6 counts as that
-    float density = 1000.0f;                    // kg/m3, > 0; used where mass is 0
+    Vector3 linearVelocity = Vector3::Zero();   // m/s, of the center of mass; clamped to 3e8
+    Vector3 angularVelocity = Vector3::Zero();  // rad/s, world axes; clamped to 1e6
+    float density = 1000.0f;                    // kg/m3, > 0; used if mass is 0
     float mass = 0.0f;                          // kg, >= 0; 0: density times volume
     Vector3 inertia = Vector3::Zero();          // kg m2 about the shape's principal axes; zero: the shape's own
     Material material{};
@@ -119,55 +120,55 @@ struct BodySettings {
     float angularDamping = 0.0f;  // 1/s, >= 0
     float gravityFactor = 1.0f;   // finite
     LockedAxes lockedAxes = LockedAxes::None;
-    // Upper limits, which hold for dynamic and kinematic bodies whatever pushes them: of the velocity after a step, and
-    // of the motion within one.
-    float maxLinearSpeed = 1000.0f;  // m/s, > 0; more than 3e8 counts as that
-    float maxAngularSpeed = 300.0f;  // rad/s, > 0; more than 1e6 counts as that
-    bool gyroscopicTorque = true;    // conserve angular momentum of bodies whose inertia is not spherical
+    // Speed limits of dynamic and kinematic bodies: for the velocity after a step, and for the motion within it.
+    float maxLinearSpeed = 1000.0f;  // m/s, > 0; clamped to 3e8
+    float maxAngularSpeed = 300.0f;  // rad/s, > 0; clamped to 1e6
+    bool gyroscopicTorque = true;    // conserves angular momentum of bodies with non-spherical inertia
     bool allowSleep = true;
     bool startAsleep = false;  // dynamic bodies only
     uint8_t layer = 0;         // 0..31, see SystemSettings::layerCollides
     // Two bodies collide only if each has a bit of its category in the other's mask,
     uint64_t category = 1, mask = ~uint64_t(0);
-    CollisionGroup group{};  // and only if the filter of a group that both are in lets them
+    CollisionGroup group{};  // and only if the filter of their common group, if any, allows it
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
-    bool reportsContacts = true;  // see EventSettings
-    bool isSensor = false;        // touches nothing, and reports what is inside: PhysicsSystem::SensorEvents
-    SensorSees sensorSees = SensorSees::Default;  // of those that layers, masks and groups let it meet
+    bool reportsContacts = true;                  // see EventSettings
+    bool isSensor = false;                        // no contacts; reports bodies inside: PhysicsSystem::SensorEvents
+    SensorSees sensorSees = SensorSees::Default;  // among those that layers, masks and groups allow
     bool sensorReportsStay = true;                // an event in each step for each body that stays inside
 };
 
 struct SleepSettings {
     bool enabled = true;
-    float seconds = 0.5f;  // >= 0: an island whose bodies have all been slow for so long falls asleep
-    // m/s, >= 0: slow is below this, at the farthest point of the body; of small bodies below one radius a second.
+    float seconds = 0.5f;  // >= 0: an island whose bodies have all been slow for this long falls asleep
+    // m/s, >= 0: a body is slow if its fastest point is below this; small bodies below one radius per second.
     float linearSpeed = 0.05f;
 };
 
-// Accuracy of resting contacts and of joints: islands get more substeps than the system's where these are too few
+// Target accuracy of resting contacts and of joints: islands that need it get more substeps than the system's
 // (Docs/Step.md). Other islands do not cost more.
 struct AccuracyTarget {
-    // How deep bodies sink into each other at a contact, as a part of the smaller one's size (half an edge of a cube),
-    // > 0; infinite: no island has more substeps. Slender islands, as columns are, get as many as keep them upright by
-    // a margin of four at 0.004, in inverse proportion to this.
+    // Allowed penetration at a contact, as a fraction of the smaller body's size (half an edge of a cube), > 0;
+    // infinite: never more substeps. Slender islands, such as columns, get as many as keep them upright with a safety
+    // factor of four at 0.004, in inverse proportion to this.
     float penetration = 0.004f;
-    // m, > 0: how far apart the anchors of a joint may be along what it locks; infinite: no island has more substeps
-    // for that. It follows what is measured, within some tenths of a second.
+    // m, > 0: allowed distance of a joint's anchors along locked directions; infinite: never more substeps for that.
+    // Controlled by the measured error, with a delay of some tenths of a second.
     float jointError = std::numeric_limits<float>::infinity();
     int mostSubsteps = 64;  // 1..64
-    // Whether islands of 768 constraints and more get as many, too. If not, they get only what the weight of small
-    // bodies in them asks for: few contacts of a large pile carry much, but all of it is solved with the same effort.
+    // Whether islands of 768 constraints and more get additional substeps for all of this. If not, they get only those
+    // that the weight on small bodies requires: few contacts of a large pile carry much, but all of them are solved
+    // with the same effort.
     bool largeIslands = false;
 };
 
-// What PhysicsSystem::Events lists. What is off costs nothing.
+// Selects the events of PhysicsSystem::Events. Events that are off cost nothing.
 struct EventSettings {
-    // Contacts that begin and end, and hits of continuous collision: of bodies of which one has
+    // Contacts that begin and end, and hits of continuous collision, if one of the bodies has
     // BodySettings::reportsContacts.
     bool contacts = false;
-    bool stays = true;    // with them an event in each step for each contact that goes on
-    bool bodies = false;  // which bodies are awake, moved, woke, fell asleep
+    bool stays = true;    // additionally an event per step for each persisting contact
+    bool bodies = false;  // bodies that are awake, moved, woke up, fell asleep
 };
 
 struct SystemSettings {
@@ -177,30 +178,28 @@ struct SystemSettings {
     SleepSettings sleep{};
     EventSettings events{};
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
-    // m, > 0, at most 1000: contact points are created at this separation, before bodies touch; of small shapes, at a
-    // quarter of the smaller one's outer radius.
+    // m, > 0, at most 1000: separation below which contact points are created before bodies touch; for small shapes a
+    // quarter of the smaller outer radius.
     float speculativeDistance = 0.02f;
-    float penetrationSlop = 0.0f;  // m, >= 0: overlap that is left alone
-    // Hz, > 0, of the spring that pushes overlaps apart. It is never stiffer than substeps resolve: at most
-    // sqrt((velocityIterations + positionIterations) / 45) of their rate, by default a fifth. Infinite: as stiff as
-    // that.
+    float penetrationSlop = 0.0f;  // m, >= 0: overlap that is not corrected
+    // Hz, > 0: frequency of the soft contact. Limited to what substeps can resolve: sqrt((velocityIterations +
+    // positionIterations) / 45) of the substep rate, by default a fifth. Infinite: that limit.
     float contactFrequency = std::numeric_limits<float>::infinity();
     float contactDampingRatio = 1.0f;  // 0..1e6
-    float contactPushSpeed = 3.0f;     // m/s, > 0, at most 1e6: the fastest push
-    // m/s, > 0, at most 1e6: the fastest that bodies which were created, placed or grown in each other are pushed
-    // apart. They keep none of that velocity.
+    float contactPushSpeed = 3.0f;     // m/s, > 0, at most 1e6: largest recovery speed of overlaps
+    // m/s, > 0, at most 1e6: largest speed at which bodies that were created, placed or grown inside each other are
+    // separated. They keep none of that velocity.
     float depenetrationSpeed = 0.5f;
-    float jointFrequency =
-        std::numeric_limits<float>::infinity();  // Hz, likewise, of the spring that pulls joints together
-    float jointDampingRatio = 1.0f;              // 0..1e6
-    // Joints that carry more than this times the mass of their own bodies are solved exactly, as trees, where they form
-    // such; twice this where all masses are alike, as in a rope that carries nothing (Docs/Joints.md). > 0, infinite:
-    // never.
+    float jointFrequency = std::numeric_limits<float>::infinity();  // Hz, likewise: frequency of soft joint locks
+    float jointDampingRatio = 1.0f;                                 // 0..1e6
+    // Trees of joints whose load exceeds this multiple of their own bodies' mass are solved by the direct solver; twice
+    // this if all masses are alike, as in an unloaded rope (Docs/Joints.md). > 0, infinite: never.
     float exactJointLoad = 10.0f;
-    // m/s and rad/s, > 0, at most 1e6: the fastest pull; from afar up to three times that (Docs/Joints.md).
+    // m/s and rad/s, > 0, at most 1e6: largest correction speed of joints; up to three times that if they are far apart
+    // (Docs/Joints.md).
     float jointPushSpeed = 20.0f;
-    // m/s, >= 0: slower impacts do not bounce; between bodies that gravity does not press together, only those slower
-    // than four substeps of gravity do not.
+    // m/s, >= 0: restitution threshold, slower impacts do not bounce. Between bodies that gravity does not press
+    // together the threshold is at most the speed gained in four substeps of gravity.
     float restitutionSpeed = 0.5f;
     float boundsMargin = 0.05f;  // m, > 0: fat bounds exceed the shape's by this, or a quarter of its outer radius
     // Bit j of layerCollides[i]: bodies of layer i and j collide. Must be symmetric.

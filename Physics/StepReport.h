@@ -1,4 +1,4 @@
-// What a step did: sizes, times, the worst culprits. Filled by PhysicsSystem::Update.
+// Statistics of a step: sizes, times, worst cases. Filled by PhysicsSystem::Update.
 #pragma once
 
 #include <Fulcrum/Physics/JointSettings.h>
@@ -7,15 +7,15 @@
 
 namespace fulcrum {
 
-// The stages of a step have numbers, 0 .. kStageCount - 1, in their order. Their list is in Physics/Stages/Step.cpp.
+// Stages are numbered 0..kStageCount - 1 in their order. Their list is in Physics/Stages/Step.cpp.
 inline constexpr int kStageCount = 13;
 const char* StageName(int stage);
 
-// An island that was solved with more than the settings' numbers, and what it was solved with.
+// An island that was solved with more effort than the settings', and its effort.
 struct IslandEffortReport {
     int substeps = 0, velocityIterations = 0, positionIterations = 0;
-    // For whom: the body that would sink deepest beyond AccuracyTarget, the lighter one of its contact; or one of a
-    // joint that asks for more, or of a tree of joints that carries much.
+    // The body that required it: the one that would exceed AccuracyTarget most, the lighter one of its contact; or a
+    // body of a joint that asks for more effort, or of a loaded tree of joints.
     BodyId culprit;
 };
 
@@ -26,27 +26,26 @@ struct StepReport {
     uint32_t bodies = 0, awakeBodies = 0;
     uint32_t pairs = 0;                        // of colliders whose fat bounds overlap, awake ones
     uint32_t contacts = 0, contactPoints = 0;  // manifolds with at least one point, awake ones
-    uint32_t keptManifolds = 0;                // of these, not collided anew
+    uint32_t keptManifolds = 0;                // of these, reused from the last step
     uint32_t joints = 0;                       // awake ones
-    float largestJointError = 0;               // m, >= 0: between the anchors of locks, as the step began
-    float largestJointAngle = 0;               // rad, >= 0
+    float largestJointError = 0;  // m, >= 0: between the anchors, along locked directions, at the start of the step
+    float largestJointAngle = 0;  // rad, >= 0
     JointId worstJoint, mostTurnedJoint;
-    uint32_t colors = 0, overflowConstraints = 0;  // overflow: fitted no color, solved one by one
-    uint32_t islands = 0;                          // awake ones that something touches
+    uint32_t colors = 0, overflowConstraints = 0;  // overflow: without a color, solved serially
+    uint32_t islands = 0;                          // awake ones with constraints
     uint32_t islandsWithMoreEffort = 0;            // than the settings'
-    // Of them those with the most substeps, then iterations, the greatest effort first; beyond their number zeros.
+    // The islands with the most substeps, then iterations, the greatest effort first; unused entries are zero.
     std::array<IslandEffortReport, 4> mostEffort{};
     float largestPenetration = 0;  // m, >= 0, as found by Collide
     BodyId deepestA, deepestB;
     CollideCounters libccd;
-    // Bodies that were stopped because numbers of theirs were not finite: frozen, where these were their own; where
-    // only what constraints made of their motion was, they are at rest where the step found them, and go on in the
-    // next.
+    // Bodies that were stopped because their state was not finite. They are frozen; but if only the velocity computed
+    // by constraints was not finite, they are at rest at their pose before the step, and continue in the next.
     uint32_t frozenBodies = 0;
     BodyId firstFrozen;                          // the one with the lowest index
-    uint32_t sweptBodies = 0, sweptHits = 0;     // of continuous collision: bodies that were cast, and what they hit
-    uint32_t sensorTests = 0, sensorEvents = 0;  // pairs of a sensor and a body whose shapes were looked at; events
-    uint32_t clampedBodies = 0;                  // bodies that were held to their largest speeds
+    uint32_t sweptBodies = 0, sweptHits = 0;     // continuous collision: bodies that were cast, and hits
+    uint32_t sensorTests = 0, sensorEvents = 0;  // pairs of a sensor and a body whose shapes were tested; events
+    uint32_t clampedBodies = 0;                  // bodies that were clamped to their speed limits
 };
 
 }  // namespace fulcrum

@@ -114,7 +114,7 @@ MaybeError CheckShape(const Shape* shape, MotionType motion) {
     if (motion == MotionType::Dynamic && (shape->IsSurface() || shape->Type() == ShapeType::Plane))
         return Error{ErrorCode::Unsupported, std::string("shape is a ") + ShapeTypeName(shape->Type()) +
                                                  "; a dynamic body needs one with a volume"};
-    // Of a custom shape, or with one inside: all others are checked when they are made.
+    // Only custom shapes, and shapes that contain one, can fail: all others are checked when created.
     const Bounds& box = shape->LocalBounds();
     if (shape->Type() != ShapeType::Plane && shape->Type() != ShapeType::Empty &&
         !(IsFinite(box.lower) && IsFinite(box.upper)))
@@ -158,7 +158,7 @@ MaybeError Check(const BodySettings& s) {
 }
 
 MaybeError Check(const SystemSettings& s) {
-    // Where more makes no sense, and products of it would leave the floats.
+    // Upper bound of settings whose products would otherwise overflow a float.
     constexpr double kMost = 1e6;
     if (MaybeError e = FirstOf(
             CheckFinite("gravity", s.gravity), CheckRange("gravity", double{s.gravity.cwiseAbs().maxCoeff()}, 0, kMost),

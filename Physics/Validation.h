@@ -1,4 +1,4 @@
-// Checks of what callers pass in. Each returns an error that names the field, its value and what would be valid.
+// Checks of arguments. Each returns an error with the field's name, its value and the valid range.
 #pragma once
 
 #include <Fulcrum/Physics/Settings.h>
@@ -9,21 +9,21 @@ namespace fulcrum {
 
 MaybeError CheckFinite(const char* field, const Vector3& value);
 MaybeError CheckFinite(const char* field, const Position& value);
-// Finite, and near enough for floats to hold it, with its squares: 1e18 m.
+// Finite, and within 1e18 m, so that squares fit a float.
 MaybeError CheckPosition(const char* field, const Position& value);
 MaybeError CheckRange(const char* field, double value, double low, double high);  // both ends included
 MaybeError CheckPositive(const char* field, double value);
 MaybeError CheckNotNegative(const char* field, double value);
 MaybeError CheckRotation(const char* field, const Quaternion& value);  // finite, of length 1 within 1e-3
-// One of the enumerators, from 0 to `last`; of masks, a combination of them.
+// One of the enumerators, from 0 to `last`; for masks, a combination of them.
 template <class E>
 MaybeError CheckEnum(const char* field, E value, E last) {
     return CheckRange(field, static_cast<double>(value), 0, static_cast<double>(last));
 }
-// Mass, kg, and moments of inertia, kg m2, must have inverses that are normal floats; the fields are what they come
-// from.
+// Mass, kg, and moments of inertia, kg m2, must have inverses that are normal floats; the fields are those from which
+// they are computed.
 MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia);
-// Not null; of a dynamic body, with a volume.
+// Not null; for a dynamic body, with a volume.
 MaybeError CheckShape(const Shape* shape, MotionType motion);
 MaybeError Check(const Material& material);
 MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape);
@@ -33,7 +33,7 @@ MaybeError Check(const SystemSettings& settings);
 
 Error Unknown(BodyId id);
 
-// The first error of several checks, none where all are empty.
+// The first error of several checks, if any.
 template <class... Checks>
 MaybeError FirstOf(Checks&&... checks) {
     MaybeError first;

@@ -9,9 +9,9 @@
 // - Update writes the leaf's box and enlarges its ancestors as far as needed; ancestors that could shrink are only
 //   marked stale.
 // - Remove empties the leaf's slot and frees nodes that became empty.
-// - Optimize refits the stale boxes, and rebuilds the tree where that pays.
+// - Optimize refits the stale boxes, and rebuilds the tree if that pays off.
 //
-// Where most leaves change at once, UpdateLeaves and VisitPairs cost less per leaf. Both work on ranges of nodes, which
+// If most leaves change at once, UpdateLeaves and VisitPairs are cheaper per leaf. Both work on ranges of nodes, which
 // threads may share.
 #pragma once
 
@@ -40,9 +40,9 @@ public:
     uint32_t Size() const { return size_; }
     Bounds GetBounds(uint32_t id) const;  // id is in the tree
 
-    // Once a step: refits the ancestors of leaves that changed. Rebuilds the tree when the extra work that its looser
-    // boxes have cost queries since the last rebuild has added up to the cost of a rebuild; each Insert and Update is
-    // assumed to be followed by one query.
+    // Once a step: refits the ancestors of leaves that changed. Rebuilds the tree when the extra cost of queries due to
+    // its looser boxes since the last rebuild has reached the cost of a rebuild; each Insert and Update is assumed to
+    // be followed by one query.
     void Optimize();
 
     // Nodes are 0 .. NodeCount() - 1; any may have no leaves. The functions over ranges of nodes are defined in
@@ -52,15 +52,15 @@ public:
     // parallel. Until all nodes are written and NoteUpdated was called, only NodeCount may be called.
     template <class BoundsOf>
     void UpdateLeaves(uint32_t begin, uint32_t end, BoundsOf&& boundsOf);
-    // After UpdateLeaves: how many of the leaves changed. The next Optimize, which must follow before any query, refits
+    // After UpdateLeaves: the number of changed leaves. The next Optimize, which must follow before any query, refits
     // their ancestors.
     void NoteUpdated(uint32_t changed);
 
-    // Rebuilds the whole tree, top down, each node full but for the last ones; leaves that are large compared to the
+    // Rebuilds the whole tree, top down, each node full except for the last ones; leaves that are large compared to the
     // whole, such as floors, hang right below the root.
     void Rebuild();
 
-    // Forgets all leaves and keeps the memory.
+    // Removes all leaves and keeps the memory.
     void Clear();
 
     // Calls visit(uint32_t id) for every leaf whose bounds overlap `bounds` (touching counts; infinite bounds are
@@ -96,8 +96,8 @@ public:
     // Bytes allocated.
     size_t MemoryUsed() const;
 
-    // Aborts where the structure is broken: a leaf unreachable or reached twice, a parent that does not contain a
-    // child, a wrong count. For tests; reads the whole tree.
+    // Aborts if the structure is broken: a leaf unreachable or reached twice, a parent that does not contain a child, a
+    // wrong count. For tests; reads the whole tree.
     void Validate() const;
 
 private:

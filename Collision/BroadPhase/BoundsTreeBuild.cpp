@@ -21,7 +21,7 @@ inline float Center(const float* leaf, int axis) { return leaf[axis] - leaf[4 + 
 struct Spread {
     int axis;
     float lowest, extent;
-    // False where all centers coincide or overflow, so that any split is as good as another.
+    // False if all centers coincide or overflow: any split is then as good as another.
     bool IsUsable() const { return extent > 1e-30f && extent < std::numeric_limits<float>::max(); }
 };
 

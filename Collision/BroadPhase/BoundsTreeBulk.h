@@ -1,4 +1,4 @@
-// Updates and pair searches of most leaves of a BoundsTree at once, node by node: where nearly everything moved, far
+// Updates and pair searches of most leaves of a BoundsTree at once, node by node: if nearly everything moved, far
 // cheaper per leaf than one query each. Used by UpdateBounds and FindPairs, in parallel over ranges of nodes. Allocates
 // nothing.
 #pragma once

@@ -8,7 +8,7 @@ namespace fulcrum {
 
 namespace {
 
-// One or two vertices of a core that lie farthest along a direction. Of more than two, two are enough.
+// One or two vertices of a core that lie farthest along a direction. If there are more, two are enough.
 struct SupportingEdge {
     uint8_t vertices[2];
     int count = 0;

@@ -11,8 +11,8 @@ namespace fulcrum {
 // normal. So does the ball of radius R = innerRadii about the difference c = centers of the two. Along a direction at
 // the angle t from the normal the disc bounds the separation by -depth cos t - r sin t, which is at most -depth while
 // tan(t / 2) <= r / depth; the ball bounds it by c_n cos t + c_t sin t - R, which must suffice for all larger angles:
-// there it falls, so it is enough to test the first angle. If the cores are apart (depth <= 0), nothing more is needed
-// than that the features touch.
+// there it falls, so it is enough to test the first angle. If the cores are apart (depth <= 0), it is sufficient that
+// the features touch.
 inline bool NoBetterAxis(const Vector3& centers, float innerRadii, const Vector3& normal, float depth,
                          float discRadius) {
     if (depth <= 0.0f) return true;

@@ -1,5 +1,5 @@
 // The full separating axis test of two overlapping polyhedra: every face normal and every pair of edges that forms a
-// face of their Minkowski difference. Robust and slow: called if EPA gives up. Allocates nothing; thread-safe.
+// face of their Minkowski difference. Robust and slow: called if EPA fails. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/PolyhedronPair.h>

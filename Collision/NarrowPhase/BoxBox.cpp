@@ -44,7 +44,7 @@ struct BestFace {
     int axis;
 };
 
-// The six face axes, three at once. Of equally good ones A's come first, or the cached one.
+// The six face axes, three at once. Ties prefer A's, or the cached one.
 BestFace FindBestFace(const BoxPair& pair, const PairCache& cache, float prefer) {
     const Matrix3 &r = pair.rotation, &t = pair.transposed;
     const Four halfA = FourOf(pair.halfA), halfB = FourOf(pair.halfB);

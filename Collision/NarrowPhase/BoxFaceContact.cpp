@@ -50,7 +50,7 @@ struct Origin {
 };
 
 struct Candidates {
-    FlatPoints<16> points;  // of which at most 12 are used: two a side, and the corners of the rectangle
+    FlatPoints<16> points;  // at most 12 are used: two per side, and the corners of the rectangle
     Origin origins[16];
 
     void Add(float u, float v, float w, Origin origin) {
@@ -68,8 +68,8 @@ uint32_t FeatureOf(const Origin& origin, const FaceCorners& reference, const Fac
     return referenceOfA ? CrossingFeature(r, i) : CrossingFeature(i, r);
 }
 
-// Clips as ClippedFeature.h does, but a parallelogram by a rectangle and in lanes: with the general code large_pyramid
-// takes 6 % more instructions.
+// Like ClippedFeature.h, but specialized to a parallelogram and a rectangle, in lanes: with the general code
+// large_pyramid takes 6 % more instructions.
 
 // The sides of the parallelogram are cut by the reference rectangle, all four at once (Y. Liang and B. Barsky, A New
 // Concept and Method for Line Clipping, ACM TOG 3(1), 1984). The rectangle is larger by the slop, so that sides that
@@ -125,13 +125,13 @@ void AddCutSides(const Parallelogram& p, float halfU, float halfV, float slop, f
 // The corners of the reference rectangle that lie inside the parallelogram by more than the slop.
 void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float slop, float reach, Candidates& out) {
     const float determinant = p.u1 * p.v2 - p.u2 * p.v1;
-    if (Abs(determinant) <= 1e-12f * (halfU * halfV)) return;  // seen edge on
+    if (Abs(determinant) <= 1e-12f * (halfU * halfV)) return;  // degenerate: seen edge on
     const float scale = 1.0f / determinant;
     const Four u = FourOf(halfU, -halfU, -halfU, halfU), v = FourOf(halfV, halfV, -halfV, -halfV);
     const Four du = u - Four(p.u), dv = v - Four(p.v);
     const Four along1 = (du * Four(p.v2) - dv * Four(p.u2)) * Four(scale);
     const Four along2 = (dv * Four(p.u1) - du * Four(p.v1)) * Four(scale);
-    // The height of the parallelogram over a side, which the slop is measured along, is |determinant| / |that side|.
+    // The slop is measured along the height of the parallelogram over a side, |determinant| / |side|.
     const float margin1 = 1.0f - slop * Sqrt(p.u2 * p.u2 + p.v2 * p.v2) * Abs(scale);
     const float margin2 = 1.0f - slop * Sqrt(p.u1 * p.u1 + p.v1 * p.v1) * Abs(scale);
     const Four w = Four(p.w) + along1 * Four(p.w1) + along2 * Four(p.w2);
@@ -144,12 +144,12 @@ void AddCoveredCorners(const Parallelogram& p, float halfU, float halfV, float s
     }
 }
 
-// A face of A or B, and the direction in which the other box is seen from it, in the frame of that box.
+// A face of A or B, and the direction to the other box, in the frame of the face's box.
 struct ReferenceBoxFace {
     bool ofA;
     int face;
     Vector3 direction;  // unit
-    float slop;         // m, by which the face is enlarged
+    float slop;         // m: enlargement of the face
 };
 
 // Projected along the direction onto the face's plane; w becomes the distance along the direction.

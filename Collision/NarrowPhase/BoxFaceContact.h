@@ -17,8 +17,9 @@ struct BoxPair {
     Vector3 positionInB;  // the same vector in B's frame
 };
 
-// Writes at most 4 points of the other box against face `face` (+x, -x, +y, -y, +z, -z) of A or B. False if the clipped
-// face is not as deep as `separation`, that of the other core from the face's plane: another axis is the better one.
+// Writes at most 4 points of the other box against face `face` (+x, -x, +y, -y, +z, -z) of A or B. Returns false if the
+// clipped face is not as deep as `separation`, that of the other core from the face's plane: another axis is better
+// then.
 bool BuildBoxFaceContact(const BoxPair& pair, bool ofA, int face, float separation, const ContactTolerances& tolerances,
                          Manifold& manifold);
 

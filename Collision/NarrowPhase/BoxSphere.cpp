@@ -23,7 +23,7 @@ void CollideBoxSphere(const PairQuery& query, Manifold& manifold) {
     if (distance > 1e-6f * (half.x() + half.y() + half.z())) {
         manifold.normal = between * (1.0f / distance);
     } else {
-        // The center is inside: out through the nearest face.
+        // The center is inside: use the nearest face.
         int axis = 0;
         for (int i = 1; i < 3; ++i)
             if (half[i] - Abs(center[i]) < half[axis] - Abs(center[axis])) axis = i;

@@ -7,19 +7,19 @@
 
 namespace fulcrum {
 
-// How pairs of shapes are collided. Automatic: by the fastest exact function of the pair table. Libccd: by libccd's GJK
-// and EPA wherever two shapes meet, for comparison; slower by far, and it allocates. See Docs/Architecture.md.
+// The narrow-phase algorithm. Automatic: the fastest exact function of the pair table. Libccd: libccd's GJK and EPA for
+// all contacts and queries, for comparison; much slower, and allocates memory. See Docs/Architecture.md.
 enum class NarrowPhaseMethod : uint8_t { Automatic, Libccd };
 
 struct CollideSettings {
-    float speculativeDistance = 0.02f;  // m, > 0: shapes this far apart already get points
+    float speculativeDistance = 0.02f;  // m, > 0: shapes up to this far apart get contact points
     NarrowPhaseMethod method = NarrowPhaseMethod::Automatic;
 };
 
-// Counts of what went wrong inside libccd; each worker has its own, the step's report adds them up.
+// Counts failures of libccd; each worker has its own, which are summed in the step's report.
 struct CollideCounters {
-    // EPA contradicted itself from every start: the best is taken of what it and MPR found, the center line and the
-    // shapes' axes, all polished.
+    // EPA's results were inconsistent from all starts: the best polished axis of EPA, MPR, the center line and the
+    // shapes' axes was used.
     uint32_t epaFailures = 0;
     uint32_t centerLineFallbacks = 0;  // MPR failed, too
 
@@ -34,10 +34,10 @@ class Plane;
 
 // Writes the manifold of a and b, `bInA` being the pose of b's center frame in a's. At most 4 points, chosen for area
 // and depth, no point with a separation above settings.speculativeDistance. Never fails: the worst case is a
-// center-line normal, counted. Allocates nothing unless by libccd. Thread-safe.
+// center-line normal, counted. Allocates only with libccd. Thread-safe.
 void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters);
-// The same where b is a half space.
+// The same for a half space b.
 void Collide(const ConvexShape& a, const Plane& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters);
 

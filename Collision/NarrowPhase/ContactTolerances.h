@@ -7,8 +7,8 @@
 namespace fulcrum {
 
 struct ContactTolerances {
-    // Of the two shapes' radii: with more speculative distance, other points than the closest may touch within the
-    // step.
+    // Fraction of the two shapes' radii: with a larger speculative distance, points other than the closest may touch
+    // within the step.
     static constexpr float kFarAhead = 0.1f;
 
     float reach;    // m: the cores' separation up to which there are points
@@ -16,11 +16,11 @@ struct ContactTolerances {
     float feature;  // m: vertices this close to the extreme one belong to the supporting feature
     // A face of A is also preferred if the cosine between its normal and the best axis is at least this.
     float faceOfACosine = 2;
-    float closing = 0;  // m, of contacts with surfaces: by so much the shape moves towards it within the step
+    float closing = 0;  // m, for contacts with surfaces: motion of the shape towards it within the step
     bool facesAhead;    // whether contacts of edges get points of the adjacent faces, too
 
-    // `innerRadii`: the sum of the radii of the balls inside the two cores, or a size for flat ones; `rounding`: of
-    // their convex radii. In m.
+    // `innerRadii`: the sum of the radii of the balls inside the two cores, or a size for flat ones; `rounding`: the
+    // sum of their convex radii. In m.
     ContactTolerances(float innerRadii, float rounding, const CollideSettings& settings)
         : reach(settings.speculativeDistance + rounding),
           prefer(Min(0.02f * settings.speculativeDistance, 0.002f * (innerRadii + rounding))),

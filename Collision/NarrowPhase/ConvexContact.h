@@ -19,8 +19,8 @@ struct KnownContact {
 // The contact of two cores that overlap: GJK's `simplex` around the origin, and the best guess of the axis.
 KnownContact FindDepth(const SupportPair& pair, const Simplex<SupportVertex>& simplex, const Vector3& guess);
 
-// Calls visit(axis) with the line between the centers and with the axes of both shapes, to both sides: where a search
-// gives up, one of them is a start to polish.
+// Calls visit(axis) with the center line and the axes of both shapes, in both directions: candidates to polish if a
+// search fails.
 template <class Visitor>
 void VisitPlainAxes(const SupportPair& pair, const Visitor& visit) {
     visit(Normalized(pair.position));
@@ -33,7 +33,7 @@ void VisitPlainAxes(const SupportPair& pair, const Visitor& visit) {
     }
 }
 
-// Turns the axis to where it separates the cores the farthest nearby, or overlaps them the least, and finds the point.
+// Rotates the axis to the nearest local maximum of the separation, and finds the contact point.
 void Polish(const SupportPair& pair, KnownContact& known);
 
 // Writes the manifold and the cache: a face contact if a face normal is nearly as good an axis, otherwise parallel
@@ -41,13 +41,13 @@ void Polish(const SupportPair& pair, KnownContact& known);
 void BuildConvexContact(const SupportPair& pair, const KnownContact& known, const ContactTolerances& tolerances,
                         PairCache& cache, Manifold& manifold);
 
-// The points of A's supporting feature over the face of B that faces it, along that face's normal `-axis`, be it
-// deepest there or beside it. Without points where B has no such face.
+// The points of A's supporting feature over the facing face of B, along that face's normal `-axis`, whether A is
+// deepest over it or beside it. No points if B has no such face.
 void BuildOverFaceOfB(const SupportPair& pair, const Vector3& axis, const ContactTolerances& tolerances,
                       Manifold& manifold);
 
 // The face that touched in the last step (cache.kind FaceOfA or FaceOfB, cache.axis its normal in its own shape's
-// frame), if it is proven to be the closest feature still; writes the manifold then. `axis`: the best guess otherwise.
+// frame), if it is proven to be still the closest feature; then writes the manifold. `axis`: the best guess otherwise.
 struct CachedFace {
     bool done;
     Vector3 axis;

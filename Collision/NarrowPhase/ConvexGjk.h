@@ -10,10 +10,10 @@ namespace fulcrum {
 struct ConvexGjkResult {
     using Status = GjkStatus;
     Status status;
-    Vector3 axis;      // unit, from A towards B; where overlapping, the last one tried
-    float separation;  // m of the cores along the axis: a lower bound of their distance where beyond reach
-    Vector3 onA, onB;  // the cores' closest points in A's frame, m; where apart
-    Simplex<SupportVertex> simplex;  // where overlapping: 1 to 4 vertices around or at the origin
+    Vector3 axis;                    // unit, from A towards B; if overlapping, the last one tried
+    float separation;                // m of the cores along the axis: a lower bound of their distance if beyond reach
+    Vector3 onA, onB;                // the cores' closest points in A's frame, m; if apart
+    Simplex<SupportVertex> simplex;  // if overlapping: 1 to 4 vertices around or at the origin
 };
 
 // `start`: a unit vector, the guess of the axis (A's frame). Ends as soon as the cores are found to be farther apart

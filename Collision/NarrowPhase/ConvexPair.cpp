@@ -1,6 +1,6 @@
 // The pair function of shapes with curved cores: tapered capsules, cylinders and custom shapes, among themselves and
 // against all others. The face that touched in the last step is tested first. Otherwise GJK finds the closest points of
-// cores that are apart, EPA the axis of least depth of those that overlap.
+// separated cores, EPA the axis of least depth of overlapping cores.
 #include <Fulcrum/Collision/NarrowPhase/ConvexContact.h>
 #include <Fulcrum/Collision/NarrowPhase/ConvexGjk.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
@@ -18,7 +18,7 @@ void TryAxis(const SupportPair& pair, const Vector3& axis, KnownContact& known) 
     known.separation = separation;
 }
 
-// Both shapes' axes and the line between their centers: starting points for Polish if EPA gives up.
+// Both shapes' axes and the line between their centers: starting points for Polish if EPA fails.
 void TryPlainAxes(const SupportPair& pair, KnownContact& known) {
     VisitPlainAxes(pair, [&](const Vector3& axis) { TryAxis(pair, axis, known); });
 }
@@ -32,7 +32,7 @@ Vector3 StartAxis(const PairCache& cache, const RelativePose& bInA) {
 
 // Moves B out along the axis until the cores are a little apart: the direction between the closest points is then an
 // axis that separates them at least as far. For n' the new axis, n the old, d the depth along n and m what is left
-// between: separation(n') >= m - n.n' (d + m) >= -d. The axis of least depth near the start stays where it is, in a few
+// between: separation(n') >= m - n.n' (d + m) >= -d. Converges to the axis of least depth near the start in a few
 // rounds.
 void Polish(const SupportPair& pair, KnownContact& known) {
     constexpr int kRounds = 6;

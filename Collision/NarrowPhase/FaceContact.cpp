@@ -30,7 +30,7 @@ struct FaceView {
             position = -pair.rotation.TransposeMultiply(pair.position);
         }
     }
-    // Of the reference face; the one after the last is the first.
+    // Corner of the reference face; the index wraps around.
     const Vector3& Corner(int i) const { return reference.vertices[corners[i == face.cornerCount ? 0 : i]]; }
     FaceNames Names() const { return {corners, face.cornerCount}; }
     Vector3 IncidentVertex(int i) const { return rotation * incident.vertices[i] + position; }
@@ -43,7 +43,7 @@ using Clipped = ClippedFeature<kMostClipped>;
 struct FaceClip {
     ClipSide sides[kMostSides];
     int sideCount;
-    int incidentFace = 0;  // 0 where the other has no faces
+    int incidentFace = 0;  // 0 if the other has no faces
     FaceNames names;       // of the incident feature
     Clipped clipped;
 

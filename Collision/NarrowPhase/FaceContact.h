@@ -9,7 +9,7 @@ namespace fulcrum {
 struct ReferenceFace {
     bool ofA;
     int index;
-    float separation;  // m: of the other core from the face's plane, negative where it dips below
+    float separation;  // m: of the other core from the face's plane, negative if below it
 };
 
 ReferenceFace MeasureFace(const PolyhedronPair& pair, bool ofA, int index);

@@ -5,6 +5,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/SimplexSearch.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -18,20 +19,22 @@ struct GjkResult {
     Vector3 axis;             // unit, from A towards B; the separating axis, or that of the closest points
     float separation;         // m along the axis: a lower bound of the distance where beyond reach, else the distance
     Simplex<Vertex> simplex;  // apart: spans the closest point; overlapping: 1 to 4 vertices around or at the origin
+    // Apart: whether the axis separates the cores by that distance. False if rounding ended the search before.
+    bool converged = true;
 };
 
 // `start`: a unit vector, the guess of the axis. Ends as soon as the cores are found to be farther apart than `reach`.
-// The pair tells its Vertex, Support(axis), SeparationAlong(axis) and Size().
+// Pair has Vertex, Support(axis), SeparationAlong(axis) and Size().
 template <class Pair>
 GjkResult<typename Pair::Vertex> Gjk(const Pair& pair, const Vector3& start, float reach) {
     constexpr int kMaxIterations = 40;
     using Real = typename Pair::Vertex::Real;
     const Real touching = 1e-6f * pair.Size() + 1e-12f;
-    GjkResult<typename Pair::Vertex> result{GjkStatus::Apart, start, 0, {}};
+    GjkResult<typename Pair::Vertex> result{GjkStatus::Apart, start, 0, {}, true};
     Simplex<typename Pair::Vertex>& simplex = result.simplex;
     Vec3<Real> axis = start.cast<Real>();
     Real distance = -1;  // of the closest point so far; negative: none yet
-    Real gap = 0;        // by which the axis found last fails to separate the cores as far as that
+    Real gap = 0;        // by how much the separation along the last axis falls short of that
     for (int i = 0; i < kMaxIterations; ++i) {
         const typename Pair::Vertex vertex = pair.Support(Vector3(axis.template cast<float>()));
         const Real bound = Dot<Real>(axis, vertex.w);
@@ -67,6 +70,7 @@ GjkResult<typename Pair::Vertex> Gjk(const Pair& pair, const Vector3& start, flo
     result.separation = static_cast<float>(distance);
     // So close that rounding spoils the direction: the axis does not separate the cores by the distance of the points.
     if (gap > 100 * touching && distance < 1000 * touching) result.status = GjkStatus::Overlapping;
+    result.converged = gap <= std::max(100 * touching, Real(1e-3f) * distance);
     return result;
 }
 

@@ -1,7 +1,6 @@
-// The first triangle that the ball inside a shape hits within the step. A thin body that lands on its edge may turn
-// over within the step and land on a side that faced away before, which has no contacts yet: its center would end up
-// behind the surface. The inner ball is inside the shape however it turns. Called by SurfaceContact for fast bodies.
-// Thread-safe.
+// Finds the first triangle that the inscribed ball of a shape hits within the step. A thin body that lands on its edge
+// may tip over within the step and land on a side that has no contacts yet, so that its center would end up behind the
+// surface. The inner ball is inside the shape at any rotation. Called by SurfaceContact for fast bodies. Thread-safe.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -13,7 +12,7 @@ struct InnerBall {
     Vector3 center;  // m, in the surface's frame
     Vector3 motion;  // m, of the center within the step, likewise
 
-    // Triangles that are approached by less than this are left to the other contacts, m.
+    // m: triangles approached by less than this are left to the other contacts.
     float FarMotion() const { return kFar * radius; }
     bool MovesFar() const { return LengthSquared(motion) > FarMotion() * FarMotion(); }
 
@@ -23,8 +22,8 @@ private:
 
 struct InnerBallHit {
     bool exists = false;
-    TriangleView triangle;  // with its front to the ball
-    float separation = 0;   // m, of the ball from the triangle's plane as the step begins
+    TriangleView triangle;  // front side towards the ball
+    float separation = 0;   // m, of the ball from the triangle's plane at the start of the step
 };
 InnerBallHit FindInnerBallHit(const InnerBall& ball, std::span<const TriangleView> triangles, bool twoSided);
 

@@ -10,7 +10,7 @@ namespace fulcrum {
 
 namespace {
 
-// A contact normal this near to the face's counts as the face's: a tenth of a degree.
+// A contact normal this close to the face's counts as the face's: a tenth of a degree.
 constexpr float kFaceCosine = 0.9999985f;
 
 // Feature ids that last from step to step: corners of A are the same on every triangle, corners of the surface on all
@@ -45,12 +45,12 @@ void InternalEdgeFilter::AddFace(const TriangleView& view, const Manifold& manif
 void InternalEdgeFilter::AddNearest(const TriangleView& view, const Vector3& axis, bool overlaps,
                                     const Manifold& onFace, const Manifold& nearest) {
     if (Dot(axis, view.normal) > 0) {
-        // The axis leads out through the back, where a surface pushes nothing.
+        // The axis leads out through the back, where a surface has no contacts.
         if (overlaps && onFace.pointCount > 0) AddFace(view, onFace);
         return;
     }
     if (nearest.pointCount == 0) return;
-    // What is nearest at a side may lie along the face: then the points that are farther along it count, too.
+    // The nearest feature at a side may lie along the face: then the points farther along it count, too.
     if (-Dot(axis, view.normal) > kFaceCosine) AddFace(view, onFace.pointCount > nearest.pointCount ? onFace : nearest);
     else Defer(view, axis, nearest, onFace);
 }
@@ -75,7 +75,7 @@ void InternalEdgeFilter::Defer(const TriangleView& view, const Vector3& axis, co
     } else {
         deferred.active = isActive(nearest[0]) || isActive((nearest[0] + 2) % 3);
     }
-    // At an edge that counts as flat, too: with all points along the face, where these are more.
+    // Also at an edge that counts as flat: use all points along the face, if there are more.
     const bool isFlat = !deferred.active && -Dot(axis, view.normal) > kFlatCosine;
     const bool isAtEdge = deferred.active || (isFlat && onFace.pointCount <= manifold.pointCount);
     deferred.active |= isFlat;
@@ -135,7 +135,8 @@ std::vector<SurfaceManifold>& InternalEdgeFilter::Resolve() {
     });
     for (const DeferredContact& deferred : deferred_) {
         const bool isEdgeCovered = isCovered(deferred.vertices[0]) && isCovered(deferred.vertices[1]);
-        // Points on the face are kept, though the neighbor is nearer: without them a shape across two faces would rock.
+        // Points on the face are kept, although the neighbor is closer: without them a shape across two faces would
+        // rock.
         if (!isEdgeCovered) contacts_.push_back(deferred.contact);
         else if (deferred.onFace.manifold.pointCount > 0) contacts_.push_back(deferred.onFace);
         isCovered(deferred.vertices[0]) = isCovered(deferred.vertices[1]) = 1;

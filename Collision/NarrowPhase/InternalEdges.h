@@ -1,5 +1,5 @@
-// Keeps a shape that slides over a surface from bumping into the edges between its triangles (internal edges, ghost
-// collisions). Contacts with faces count as they are found. Contacts with edges and corners are deferred until all
+// Removes ghost collisions with internal edges: a shape that slides over a surface must not bump into the edges between
+// its triangles. Contacts with faces are accepted directly. Contacts with edges and corners are deferred until all
 // faces are known; then
 // - one at an edge or corner of a triangle with a face contact is dropped, since that contact covers it;
 // - one at an active edge (SurfaceShape.h), or nearly along the face's normal, counts, the deepest first, and covers
@@ -23,14 +23,14 @@ public:
 
     void Clear();
     void AddFace(const TriangleView& view, const Manifold& manifold);
-    // What is nearest to a triangle: its face, or one of its edges or corners. `axis`: unit, towards the triangle, in
-    // the surface's frame; onFace: the contact with the face, if any.
+    // Adds the closest feature of a triangle: its face, or one of its edges or corners. `axis`: unit, towards the
+    // triangle, in the surface's frame; onFace: the contact with the face, if any.
     void AddNearest(const TriangleView& view, const Vector3& axis, bool overlaps, const Manifold& onFace,
                     const Manifold& nearest);
-    // Points on the face of a shape that is deeper beyond an inactive edge or corner, over the neighbor. False if it is
-    // ambiguous beyond which: nothing was added.
+    // Adds points on the face for a shape that is deeper beyond an inactive edge or corner, over the neighbor. Returns
+    // false, adding nothing, if it is ambiguous beyond which one.
     bool DeferToNeighbor(const TriangleView& view, const TriangleInShape& triangle, float slop, const Manifold& onFace);
-    // Decides on the deferred ones. Returns all contacts that count.
+    // Decides on the deferred contacts. Returns all accepted contacts.
     std::vector<SurfaceManifold>& Resolve();
     size_t MemoryUsed() const;  // bytes, besides the object itself
 
@@ -38,7 +38,7 @@ private:
     struct DeferredContact {
         SurfaceManifold contact;
         SurfaceManifold onFace;
-        uint32_t vertices[2];  // ids; the same twice for a corner
+        uint32_t vertices[2];  // ids; equal for a corner
         float separation;      // m, of the deepest point
         bool active;
     };

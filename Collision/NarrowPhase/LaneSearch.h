@@ -7,7 +7,7 @@
 
 namespace fulcrum {
 
-// By halves: three comparisons deep. The result does not depend on the order; no lane is NaN.
+// By halving: three levels of comparisons. The result does not depend on the order; no lane is NaN.
 inline float Largest(Wide<8> a) {
     float lanes[8];
     a.Store(lanes);

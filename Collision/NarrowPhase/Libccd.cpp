@@ -18,22 +18,22 @@ namespace fulcrum {
 
 namespace {
 
-// A shape as libccd sees it: in A's frame, in double.
+// A shape for libccd's callbacks: in A's frame, in double.
 struct Body {
     const ConvexShape* shape;
     Mat3<double> rotation;
     Position position;
     double rounding;  // m
-    Position start;   // where GJK looks first
+    Position start;   // first direction of GJK
     bool isMpr;
-    mutable int supports = 0;                       // asked for so far
+    mutable int supports = 0;                       // number of support calls so far
     mutable Position lastAsked = Position::Zero();  // unit
 
-    // Nothing limits libccd's loops. EPA expands what is nearest until nothing is: where a ball's center lies on a
-    // corner of the other shape, all of the ball's surface is equally near, and its facets are without number. MPR
-    // refines its portal for ever where coordinates round by more than the shapes are thick.
+    // libccd's loops are unbounded. EPA does not terminate if a ball's center lies on a corner of the other shape: the
+    // whole surface of the ball is equally near. MPR refines its portal forever if rounding of coordinates exceeds the
+    // shapes' thickness.
     static constexpr int kMostSupports = 400;
-    // From there on supports lie inside, which ends EPA, or are no numbers, which MPR takes for shapes that are apart.
+    // Beyond that, supports are inside the polytope, which ends EPA, or NaN, which MPR treats as separated shapes.
     Position Last() const {
         return isMpr ? Position(Position::Constant(std::numeric_limits<double>::quiet_NaN())) : position;
     }
@@ -68,7 +68,7 @@ void FirstDirection(const void* object, const void*, ccd_vec3_t* result) {
     ccdVec3Set(result, start.x(), start.y(), start.z());
 }
 
-// Triangles of a surface come without radii.
+// Triangles of a surface have no precomputed radii.
 double OuterRadiusOf(const ConvexShape& shape) {
     if (shape.Type() != ShapeType::Triangle) return shape.OuterRadius();
     float square = 0;
@@ -76,8 +76,8 @@ double OuterRadiusOf(const ConvexShape& shape) {
     return double{std::sqrt(square)} + shape.ConvexRadius();
 }
 
-// How thick the difference of two shapes is at least. Flat shapes have no inside: tolerances must not be 0, or EPA
-// never ends.
+// Lower bound of the thickness of the Minkowski difference. Flat shapes have no interior: tolerances must not be 0, or
+// EPA does not terminate.
 double Thickness(const ConvexShape& a, const ConvexShape& b) {
     return std::max(static_cast<double>(a.InnerRadius()) + b.InnerRadius(),
                     0.02 * (OuterRadiusOf(a) + OuterRadiusOf(b)));
@@ -87,18 +87,18 @@ enum class Algorithm : uint8_t { Gjk, Epa, Mpr };  // Gjk: only whether they ove
 
 struct Answer {
     LibccdResult::Status status;
-    Position axis;      // unit, from A towards B. Apart: that GJK takes for a separating one; MPR tells none
+    Position axis;      // unit, from A towards B. If apart: GJK's separating axis; MPR has none
     double depth;       // m
     Position position;  // m
 };
 
-// Two shapes as libccd is asked about them.
+// The arguments of a libccd call.
 struct Question {
     const ConvexShape& a;
     const ConvexShape& b;
     const RelativePose& bInA;
     double roundingA, roundingB;  // m, of the cores
-    double epaTolerance;          // m2: libccd holds it against squares of lengths
+    double epaTolerance;          // m2: libccd compares it with squared lengths
     Position start = Position(1, 0, 0);
 
     Answer Ask(Algorithm algorithm) const;
@@ -146,9 +146,8 @@ double EpaTolerance(const ConvexShape& a, const ConvexShape& b) {
 LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, double margin,
                                LibccdAlgorithm algorithm) {
     LibccdResult result{LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};
-    // Where the balls around the shapes do not meet, the shapes do not. libccd would not find it out: its tolerances
-    // follow from the shapes' sizes, and far apart coordinates are rounded by more than that, so that its EPA never
-    // ends.
+    // Bounding spheres are tested first. libccd may not terminate for distant shapes: its tolerances are based on the
+    // shapes' sizes, and rounding of large coordinates exceeds them.
     const Position between = bInA.position.cast<double>();
     const double reach = double{a.OuterRadius()} + b.OuterRadius() + margin;
     if (!(Dot<double>(between, between) <= 1.0001 * reach * reach)) return result;
@@ -166,11 +165,11 @@ LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const
 
 namespace {
 
-// In no plane of symmetry of anything: where the origin lies on an edge of GJK's simplex libccd gives up.
+// Directions outside of common symmetry planes: libccd fails if the origin lies on an edge of GJK's simplex.
 const Position kStarts[] = {
     {0.5345, 0.8018, 0.2673}, {-0.7428, 0.3714, 0.5571}, {0.3015, -0.6030, 0.7385}, {0.1961, 0.5883, -0.7845}};
 
-// Finds where two shapes touch, by asking libccd until its answer agrees with what the supports say.
+// Finds the contact of two shapes by calling libccd until its result is consistent with the support functions.
 class ContactSearch {
 public:
     ContactSearch(const SupportPair& pair, const RelativePose& bInA, float reach)
@@ -190,7 +189,7 @@ public:
         const Position between = pair_.position.cast<double>();
         if (!(Dot<double>(between, between) <= 1.0001 * balls * balls)) return std::nullopt;  // or not finite
         if (best_.separation > farthest_) return std::nullopt;
-        // Without rounding first, where that leaves the difference of the cores any thickness: flat facets are exact.
+        // First without rounding, if the difference of the cores has any thickness: flat facets are exact.
         if (pair_.InnerRadii() > 0) {
             const Outcome outcome = TryStarts(2, 0, 0, EpaTolerance(pair_.a, pair_.b) * size_ * size_);
             if (outcome == Outcome::Agreed) return best_;
@@ -245,8 +244,7 @@ private:
         return Outcome::Undecided;
     }
 
-    // Whether another axis separates the cores by more than `most`. Where the overlap is next to nothing, EPA may end
-    // with the opposite side.
+    // Whether another axis separates the cores by more than `most`. For tiny overlaps EPA may end at the opposite side.
     bool IsDeeperThanNeeded(const Position& axis, double most) const {
         double farthest = pair_.SeparationAlong(Normalized(Vector3(-axis.cast<float>())));
         VisitPlainAxes(
@@ -345,14 +343,14 @@ void CollideWithPlaneByLibccd(const Plane& plane, const ConvexShape& shape, cons
     const float height = plane.Distance(planeInShape.InverseTransform(Vector3::Zero()));
     const float size = shape.OuterRadius() + settings.speculativeDistance;
     if (height > size) return;
-    // The way out through its top is always the shortest.
+    // So deep that the top face is always the nearest.
     const float half = 2 * Abs(height) + 4 * size;
     const auto block = Box::Create(Vector3::Constant(half));
     if (!block) return CollideWithPlane(plane, shape, planeInShape, settings, manifold);
     const RelativePose pose{up * -(height + half), FromUp(up)};
     CollideLibccd({shape, *block.Value(), pose, settings, cache, counters}, manifold);
     if (manifold.pointCount == 0) return;
-    // Rounding has turned the block's top a little.
+    // Rounding rotates the block's top a little.
     if (Dot(manifold.normal, up) < -0.9999f) {
         manifold.normal = -up;
     } else {

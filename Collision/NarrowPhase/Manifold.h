@@ -20,12 +20,12 @@ struct Manifold {
     ManifoldPoint points[kMaxPoints];
 };
 
-// What a pair function keeps from step to step, as its starting point. Part of the simulation's state. All zero: empty.
+// The warm-start data of a pair function from the last step. Part of the simulation's state. All zero: empty.
 struct PairCache {
     enum class Kind : uint8_t { None, FaceOfA, FaceOfB, EdgePair, Axis };
     Kind kind = Kind::None;
     uint16_t indexA = 0, indexB = 0;  // the faces that touched; of an EdgePair, the edges (each function's own numbers)
-    float axis[3] = {0, 0, 0};        // in A's frame, where the kind is Axis
+    float axis[3] = {0, 0, 0};        // in A's frame, if the kind is Axis
 
     Vector3 Axis() const { return Vector3(axis[0], axis[1], axis[2]); }
     void RememberAxis(Kind itsKind, const Vector3& itsAxis) {

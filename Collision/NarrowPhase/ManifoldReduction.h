@@ -46,13 +46,13 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
     return kMost;
 }
 
-// How much points that do not touch count in ChooseFour.
+// Weights of points that do not touch in ChooseFour.
 struct PointWeights {
-    float least = 1.0f;  // 0 .. 1; 1: as much as any
-    float closing = 0;   // m, >= 0: by so much the shape comes closer within the step
+    float least = 1.0f;  // 0..1; 1: same weight as touching points
+    float closing = 0;   // m, >= 0: approach of the shape within the step
 };
-// For points on triangles of a surface, which lie in several planes. motion: m, towards the surface within the step;
-// what rocks to rest moves by less than a tenth of the shape's inner radius, m.
+// For points on triangles of a surface, which lie in several planes. motion: m, towards the surface within the step; a
+// body that rocks to rest moves by less than a tenth of its inner radius, m.
 inline PointWeights WeightsOnSurfaces(float motion, float innerRadius) {
     return {0.02f, Max(motion - 0.1f * innerRadius, 0.0f)};
 }
@@ -61,9 +61,9 @@ inline PointWeights WeightsOnSurfaces(float motion, float innerRadius) {
 // from it, then those that span the largest area on each side of the line of the two; where all are on one side,
 // another there. Distances and areas count less for points that do not touch yet, down to `weighting.least`: a point
 // that the shape rests on must not lose to one farther out that does not touch, or the shape rocks. The weight depends
-// on the angle by which the shape would have to tilt to touch, beyond what it comes closer within the step: of what
-// falls, the corners come down next. The first point that is as good as the best to within `depthSlop` meters, or a
-// hundredth of the distance or area, is taken, so that rounding and tiny motions do not change the choice.
+// on the angle by which the shape would have to tilt to touch, beyond what it comes closer within the step: for falling
+// bodies these are the corners that touch next. Ties within `depthSlop` meters, or a hundredth of the distance or area,
+// are resolved in favor of the first point, so that rounding and tiny motions do not change the choice.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], const PointWeights& weighting = {}) {
     constexpr float kNearly = 0.99f, kTilt = 0.0001f;  // rad: halfway to the least weight
@@ -91,7 +91,7 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], con
         best = Max(best, values[k] = du * du + dv * dv);
     }
     const float farthest = Largest(best);
-    if (!(farthest > 0.0f)) {  // all in one place
+    if (!(farthest > 0.0f)) {  // all at the same position
         chosen[0] = first;
         return 1;
     }

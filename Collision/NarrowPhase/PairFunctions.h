@@ -30,7 +30,7 @@ void CollidePolyhedra(const PairQuery& query, Manifold& manifold);
 void CollideConvex(const PairQuery& query, Manifold& manifold);
 // Any two, by libccd: what NarrowPhaseMethod::Libccd calls in place of the table.
 void CollideLibccd(const PairQuery& query, Manifold& manifold);
-// The shape (A) and a half space, by libccd: of the half space a block that reaches beyond the shape on all sides.
+// The shape (A) and a half space, by libccd: the half space is replaced by a block larger than the shape.
 void CollideWithPlaneByLibccd(const Plane& plane, const ConvexShape& shape, const RelativePose& planeInShape,
                               const CollideSettings& settings, PairCache& cache, Manifold& manifold,
                               CollideCounters& counters);

@@ -1,4 +1,5 @@
 // The pair table: which function serves which two shapes.
+#include <Fulcrum/Collision/NarrowPhase/BoxPart.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
 
@@ -7,7 +8,7 @@ namespace fulcrum {
 namespace {
 
 // Serves (a, b) with a function written for (b, a): the same contact seen from the other side. The cache is always used
-// the same way round, so that it needs no flip.
+// in this order, so it needs no swap.
 template <PairFunction Function>
 void Flip(const PairQuery& query, Manifold& manifold) {
     const RelativePose aInB = Inverse(query.bInA);
@@ -24,7 +25,7 @@ void Flip(const PairQuery& query, Manifold& manifold) {
     manifold.normal = -(rotation * manifold.normal);
 }
 
-// How two shapes of different types meet: one function serves both orders.
+// Entry for two different types: one function serves both orders.
 struct PairEntry {
     PairFunction inOrder;  // the type that comes first in ShapeType is A
     PairFunction turned;   // it is B
@@ -66,14 +67,14 @@ private:
     bool hasLine_[kConvexShapeTypes]{};
 };
 
-// Polyhedra: which of the two is A makes no difference to CollidePolyhedra's contract, but to the bits.
+// Polyhedra: CollidePolyhedra works for both orders, but the bits of the result depend on the order.
 constexpr PairEntry kPolyhedra = kFirstIsA<CollidePolyhedra>, kPolyhedraTurned = kFirstIsB<CollidePolyhedra>;
-// CollideConvex serves any two shapes; a pair is always passed to it the same way round, so that it makes no difference
-// which shape is A.
+// CollideConvex serves any two shapes; a pair is always passed to it in the same order, so it makes no difference which
+// shape is A.
 constexpr PairEntry kConvex = kFirstIsA<CollideConvex>;
 
-// Each shape is one line: how it meets Sphere, Box, Capsule, ConvexHull, Triangle, TaperedCapsule, Cylinder, Custom, up
-// to itself. The other order follows.
+// Each shape is one line: its functions with Sphere, Box, Capsule, ConvexHull, Triangle, TaperedCapsule, Cylinder,
+// Custom, up to itself. The other order is derived.
 // clang-format off
 constexpr PairTable kPairTable = PairTable()
     .Column<ShapeType::Sphere>(kAnyOrder<CollideSphereSphere>)
@@ -89,13 +90,36 @@ constexpr PairTable kPairTable = PairTable()
 // clang-format on
 static_assert(kPairTable.IsComplete(), "every convex shape needs a line in the pair table");
 
+// If one of the two is a box far larger than the other, it is replaced by its part near the other. Not for two boxes,
+// whose separating axes are known. False: nothing is done.
+bool CollidePart(PairFunction function, const PairQuery& query, Manifold& manifold) {
+    const bool isA = query.a.Type() == ShapeType::Box;
+    if (isA == (query.b.Type() == ShapeType::Box)) return false;
+    const float reach = query.settings.speculativeDistance;
+    BoxPart part;
+    if (isA) {
+        const Vector3& center = query.bInA.position;
+        if (!part.Cut(static_cast<const Box&>(query.a), center, query.b.OuterRadius(), reach)) return false;
+        const RelativePose bInPart{center - part.Offset(), query.bInA.rotation};
+        function({part.Shape(), query.b, bInPart, query.settings, query.cache, query.counters}, manifold);
+        for (int i = 0; i < manifold.pointCount; ++i) manifold.points[i].positionOnA += part.Offset();
+        return true;
+    }
+    const Vector3 center = -InverseRotate(query.bInA.rotation, query.bInA.position);
+    if (!part.Cut(static_cast<const Box&>(query.b), center, query.a.OuterRadius(), reach)) return false;
+    const RelativePose partInA{Rotate(query.bInA.rotation, Vector3(part.Offset() - center)), query.bInA.rotation};
+    function({query.a, part.Shape(), partInA, query.settings, query.cache, query.counters}, manifold);
+    return true;
+}
+
 }  // namespace
 
 void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters) {
     const PairFunction function =
         settings.method == NarrowPhaseMethod::Libccd ? CollideLibccd : kPairTable.Of(a.Type(), b.Type());
-    function({a, b, bInA, settings, cache, counters}, manifold);
+    const PairQuery query{a, b, bInA, settings, cache, counters};
+    if (!CollidePart(function, query, manifold)) function(query, manifold);
 }
 
 void Collide(const ConvexShape& a, const Plane& b, const RelativePose& bInA, const CollideSettings& settings,

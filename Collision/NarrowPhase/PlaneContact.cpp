@@ -28,8 +28,8 @@ struct NearVertices {
     }
 };
 
-// Those of a polyhedron whose depth along `down` is at least `least`; `outside`: how far the shape's center is from the
-// plane.
+// Those of a polyhedron whose depth along `down` is at least `least`; `outside`: distance of the shape's center from
+// the plane.
 void AddVertices(const Polyhedron& core, const Vector3& down, float outside, float least, NearVertices& near) {
     const Wide<8> x(down.x()), y(down.y()), z(down.z()), lowest(least);
     for (int block = 0; block < core.laneCount; block += 8) {
@@ -43,9 +43,9 @@ void AddVertices(const Polyhedron& core, const Vector3& down, float outside, flo
     }
 }
 
-// Manifold reduction: the deepest vertex and those of the face that faces the plane first, as a body that tilts comes
-// to lie on these; where they are fewer than four, the nearest of the others. Of all vertices the largest area may be
-// that of two sides of a rod, without the end that comes down next.
+// Manifold reduction: the deepest vertex and those of the face towards the plane first, since a tilted body will land
+// on these; if they are fewer than four, the closest of the others. Maximizing the area over all vertices could choose
+// points of two sides of a rod and miss the end that touches next.
 int ChooseOfFace(const Polyhedron& core, const Vector3& down, float depthSlop, const NearVertices& near,
                  int (&chosen)[4]) {
     const ConvexHull::Face& face = core.faces[FaceAlong(core, down)];

@@ -43,19 +43,19 @@ inline bool HasPolyhedralCore(ShapeType type) {
 Polyhedron CoreOf(const ConvexHull& hull);
 // Vertex i lies at the positive x, y, z side where bit 0, 1, 2 of i is set. Faces: +x, -x, +y, -y, +z, -z.
 Polyhedron CoreOf(const class Box& box, PolyhedronStorage& storage);
-// Two faces back to back; 0 is the one that `normal` points out of. The corners are about their centroid, m.
+// Two faces back to back; face 0 has the given normal. The corners are about their centroid, m.
 Polyhedron CoreOf(const Vector3 (&corners)[3], const Vector3& normal, float radius, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Triangle& triangle, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Capsule& capsule, PolyhedronStorage& storage);
 Polyhedron CoreOf(const class Sphere& sphere, PolyhedronStorage& storage);
-// Any of those; only where HasPolyhedralCore(shape.Type()).
+// Any of those; only if HasPolyhedralCore(shape.Type()).
 Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage);
 
 inline Extreme FarthestVertex(const Polyhedron& p, const Vector3& direction) {
     return Farthest(p.x, p.y, p.z, p.laneCount, direction);
 }
 
-// How many vertices lie at least as far along `direction` as `threshold`.
+// The number of vertices at least as far along `direction` as `threshold`.
 inline int CountBeyond(const Polyhedron& p, const Vector3& direction, float threshold) {
     const Wide<8> dx(direction.x()), dy(direction.y()), dz(direction.z()), wanted(threshold);
     int count = 0;
@@ -69,7 +69,7 @@ inline int CountBeyond(const Polyhedron& p, const Vector3& direction, float thre
     return count;
 }
 
-// The face whose normal points most nearly along `direction`. Only where the polyhedron has faces.
+// The face whose normal points most nearly along `direction`. The polyhedron must have faces.
 inline int FaceAlong(const Polyhedron& p, const Vector3& direction) {
     return Farthest(p.normalX, p.normalY, p.normalZ, p.faceLaneCount, direction).index;
 }

@@ -1,7 +1,7 @@
 // The pair function of polyhedra: box-hull, hull-hull, and spheres and capsules against both. The features that touched
-// in the last step are tested first; if they are proven to be the closest still, that is all. Otherwise GJK finds the
-// closest points of cores that are apart, EPA the axis of least penetration of those that overlap, and if EPA gives up,
-// the full separating axis test does.
+// in the last step are tested first; if they are proven to be still the closest, they are used. Otherwise GJK finds the
+// closest points of separated cores, EPA the axis of least penetration of overlapping ones, or, if EPA fails, the full
+// separating axis test.
 #include <Fulcrum/Collision/NarrowPhase/AxisContact.h>
 #include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
@@ -59,6 +59,25 @@ WarmStart TryCache(const PolyhedronPair& pair, const ContactTolerances& toleranc
     return warm;
 }
 
+// The axis of the closest points, or of the least depth, and the separation along it, m.
+struct CoreDistance {
+    Vector3 axis;
+    float separation;
+    bool beyondReach, converged;
+};
+
+// GJK and EPA over `view`, the pair in float or double.
+template <class View>
+CoreDistance Measure(const View& view, const PolyhedronPair& pair, const Vector3& start, float reach) {
+    const auto gjk = Gjk(view, start, reach);
+    if (gjk.status != GjkStatus::Overlapping)
+        return {gjk.axis, gjk.separation, gjk.status == GjkStatus::BeyondReach, gjk.converged};
+    const EpaResult epa = Epa(view, gjk.simplex);
+    const FoundAxis found =
+        epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
+    return {found.axis, found.separation, false, true};
+}
+
 }  // namespace
 
 void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
@@ -68,22 +87,16 @@ void CollidePolyhedra(const PairQuery& query, Manifold& manifold) {
     const WarmStart warm = TryCache(pair, tolerances, query.cache, manifold);
     if (warm.done) return;
 
-    const GjkResult<MinkowskiVertex> gjk = Gjk(pair, warm.axis, tolerances.reach);
-    KnownAxis known{gjk.axis, gjk.separation, tolerances.feature};
-    if (gjk.status == GjkStatus::BeyondReach) {
-        manifold.normal = gjk.axis;
+    CoreDistance distance = Measure(pair, pair, warm.axis, tolerances.reach);
+    if (!distance.converged) distance = Measure(PrecisePolyhedronPair{pair}, pair, warm.axis, tolerances.reach);
+    if (distance.beyondReach) {
+        manifold.normal = distance.axis;
         manifold.pointCount = 0;
-        query.cache.RememberAxis(PairCache::Kind::Axis, gjk.axis);
+        query.cache.RememberAxis(PairCache::Kind::Axis, distance.axis);
         return;
     }
-    if (gjk.status == GjkStatus::Overlapping) {
-        const EpaResult epa = Epa(pair, gjk.simplex);
-        const FoundAxis found =
-            epa.status == EpaResult::Status::Found ? FoundAxis{epa.axis, epa.separation} : SearchAllAxes(pair);
-        known.axis = found.axis;
-        known.separation = found.separation;
-    }
-    BuildContactFromAxis(pair, known, tolerances, query.cache, manifold);
+    BuildContactFromAxis(pair, {distance.axis, distance.separation, tolerances.feature}, tolerances, query.cache,
+                         manifold);
 }
 
 }  // namespace fulcrum

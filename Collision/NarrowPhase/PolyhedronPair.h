@@ -51,4 +51,32 @@ struct PolyhedronPair {
     }
 };
 
+// The same in double, for cores of so different sizes that floats cannot resolve the closest points of their
+// difference.
+struct PrecisePolyhedronPair {
+    struct Vertex {
+        using Real = double;
+
+        Position w;
+        uint8_t a, b;
+        bool SameAs(const Vertex& v) const { return a == v.a && b == v.b; }
+    };
+
+    const PolyhedronPair& pair;
+
+    Vertex Support(const Vector3& n) const {
+        const MinkowskiVertex v = pair.Support(n);
+        const Position onB = pair.b.vertices[v.b].cast<double>(), onA = pair.a.vertices[v.a].cast<double>();
+        const Matrix3& r = pair.rotation;
+        const Position rotated =
+            r.x.cast<double>() * onB.x() + r.y.cast<double>() * onB.y() + r.z.cast<double>() * onB.z();
+        return {rotated + pair.position.cast<double>() - onA, v.a, v.b};
+    }
+    float SeparationAlong(const Vector3& n) const {
+        return static_cast<float>(Dot<double>(n.cast<double>(), Support(n).w));
+    }
+    float Size() const { return pair.Size(); }
+    float DepthTolerance() const { return pair.DepthTolerance(); }
+};
+
 }  // namespace fulcrum

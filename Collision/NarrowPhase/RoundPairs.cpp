@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kFastReach = 2.0f;  // of the smaller radius
 
-// The point between two rounded cores, from the closest points of the cores. `known` (unit) is the normal if it is
-// `certain`, or if the points coincide but for rounding.
+// The point between two rounded cores, from the closest points of the cores. `known` (unit) is the normal if `certain`,
+// or if the points coincide within rounding.
 void BuildPoint(const Vector3& onCoreA, const Vector3& onCoreB, float radiusA, float radiusB, const Vector3& known,
                 bool certain, float speculativeDistance, Manifold& manifold) {
     const Vector3 between = onCoreB - onCoreA;
@@ -30,7 +30,7 @@ Segment CoreSegment(const Capsule& capsule) {
     return {Vector3(0, -capsule.HalfHeight(), 0), Vector3(0, capsule.HalfHeight(), 0)};
 }
 
-// Two points along the common length of nearly parallel capsules; false if they lie one behind the other.
+// Two points along the common length of nearly parallel capsules; false if they have no common length.
 bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float speculativeDistance,
                    Manifold& manifold) {
     const CommonLength common(onA, onB);
@@ -49,7 +49,7 @@ bool BuildParallel(const Segment& onA, const Segment& onB, float radiusA, float 
     return manifold.pointCount > 0;
 }
 
-// For fast capsules, adds points of their ends: one that turns within the step may hit with an end.
+// For fast capsules, adds points of their ends: a capsule that rotates within the step may hit with an end.
 void AddEnds(const Segment& onA, const Segment& onB, float radiusA, float radiusB, float reach, Manifold& manifold) {
     const float smaller = Min(radiusA, radiusB);
     if (reach <= kFastReach * smaller) return;

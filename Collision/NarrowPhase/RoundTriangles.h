@@ -7,8 +7,8 @@
 
 namespace fulcrum {
 
-// Of a ball of `radius` m about the frame's origin whose point closest to B lies `distance` m along the unit vector
-// `normal`.
+// Contact of a ball of `radius` m at the frame's origin with B, whose closest point is at `distance` m along the unit
+// vector `normal`.
 void WriteBallContact(const Vector3& normal, float distance, float radius, Manifold& manifold);
 
 // Contacts of the core of a capsule, the segment from (0, -halfHeight, 0) to (0, halfHeight, 0) in the shape's frame,
@@ -19,7 +19,7 @@ struct SegmentContact {
     uint32_t crossing;  // an end of the segment is behind the face: nothing else is set
     uint32_t before;    // the interval from .. to of it projects onto the face
     uint32_t onFace;    // and that is its closest feature, to within the slop
-    uint32_t onSide;    // of the others, those with a side in reach; closest at `at` along the segment
+    uint32_t onSide;    // others with a side within reach; closest at `at` along the segment
 
     // Two points, or one, along the face's normal; in the shape's frame. Features are those of any two polyhedra.
     void WriteFaceContact(int triangle, const Vector3& normal, Manifold& manifold) const;
@@ -40,7 +40,7 @@ private:
     Vector3 half_;                  // from the middle to the end, in the surface's frame
     Lanes lowHeight_, highHeight_;  // of the ends above the face
     Lanes from_, to_;               // 0 .. 1 along the segment
-    Lanes fromSide_, toSide_;       // the sides that cut it there; -1: none, it ends
+    Lanes fromSide_, toSide_;       // the sides that cut it there; -1: end of the segment
     Lanes side_;                    // the nearest
     Lanes at_, sideAt_;             // 0 .. 1 along the segment and that side
     Lanes squared_;                 // the distance's

@@ -48,9 +48,9 @@ inline Vector3 ClosestOnLine(const Segment& q, const Vector3& x) {
     return q.from + d * (Dot(d, Vector3(x - q.from)) * (1.0f / Dot(d, d)));
 }
 
-// The interval along which two nearly parallel segments p and q lie side by side.
+// The interval along which two nearly parallel segments p and q are side by side.
 struct CommonLength {
-    bool exists;     // otherwise they lie one behind the other, and nothing else is set
+    bool exists;     // otherwise there is no common length, and nothing else is set
     float at[2];     // its ends, along p, 0 .. 1
     Vector3 onP[2];  // the same as points
     Vector3 onQ[2];  // and the points of q's line that are closest to those

@@ -18,6 +18,13 @@ inline Real LengthSquaredOf(const Vec3<Real>& v) {
     return Dot<Real>(v, v);
 }
 
+// Squared sines below these count as zero within rounding: of a triangle's angle, and of the angle between a
+// tetrahedron's face and the fourth vertex. A body at rest on a ground of kilometers makes simplices as flat as 1e-5.
+template <class Real>
+inline constexpr Real kFlatTriangle = sizeof(Real) == sizeof(double) ? Real(1e-24) : Real(1e-12f);
+template <class Real>
+inline constexpr Real kFlatTetrahedron = sizeof(Real) == sizeof(double) ? Real(1e-20) : Real(1e-10f);
+
 // Each of these returns that point and keeps only the vertices that span it. Source: C. Ericson, Real-Time Collision
 // Detection, 5.1, with the origin as the query point.
 template <class Vertex>
@@ -91,7 +98,7 @@ inline Vec3<typename Vertex::Real> ClosestOnTriangle(Simplex<Vertex>& s) {
     // Inside: projecting the origin onto the plane is more accurate than barycentric weights.
     const Vec3<Real> n = Cross<Real>(ab, ac);
     const Real square = Dot<Real>(n, n);
-    if (square <= Real(1e-12f) * Dot<Real>(ab, ab) * Dot<Real>(ac, ac)) return ClosestOnEdges(s);
+    if (square <= kFlatTriangle<Real> * Dot<Real>(ab, ab) * Dot<Real>(ac, ac)) return ClosestOnEdges(s);
     return n * (Dot<Real>(n, a) / square);
 }
 
@@ -108,7 +115,7 @@ inline Vec3<typename Vertex::Real> ClosestInTetrahedron(Simplex<Vertex>& s) {
         const Vec3<Real> ad = s.vertices[face[3]].w - a;
         const Real opposite = Dot<Real>(n, ad), origin = -Dot<Real>(n, a);
         // If the tetrahedron is flat, all faces are tested.
-        const bool flat = opposite * opposite <= Real(1e-10f) * Dot<Real>(n, n) * Dot<Real>(ad, ad);
+        const bool flat = opposite * opposite <= kFlatTetrahedron<Real> * Dot<Real>(n, n) * Dot<Real>(ad, ad);
         if (!flat && origin * opposite > 0) continue;
         Simplex<Vertex> triangle = s;
         triangle.count = 3;

@@ -39,8 +39,13 @@ struct SupportPair {
     }
     // The scale of rounding errors, m.
     float Size() const { return Abs(position.x()) + Abs(position.y()) + Abs(position.z()) + InnerRadii(); }
-    // The tolerance of EPA's depth, m: for curved cores it only converges.
-    float DepthTolerance() const { return 3e-5f * Size() + 1e-12f; }
+    // The tolerance of EPA's depth, m: for curved cores it only converges. Of a small shape on a large one it follows
+    // the small one, down to the rounding errors of the large one.
+    float DepthTolerance() const {
+        constexpr float kTolerance = 3e-5f, kRounding = 1e-6f;
+        const float smaller = 8 * Min(a.OuterRadius(), b.OuterRadius()), size = Size();
+        return Max(kTolerance * Min(size, smaller), kRounding * size) + 1e-12f;
+    }
 
     // The point of the difference that lies least far along n (support function).
     SupportVertex Support(const Vector3& n) const {

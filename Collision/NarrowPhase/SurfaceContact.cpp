@@ -22,7 +22,7 @@ namespace fulcrum {
 namespace {
 
 // If the cosine between a face of the shape and the normal of an edge contact is larger, the face rests on the edge, on
-// two points: 4 degrees, more than a body turns in a step while it rocks from one point to the other.
+// two points: 4 degrees, more than a rocking body rotates in a step.
 constexpr float kRestingCosine = 0.9976f;
 
 // Bounds of a shape in the surface's frame, enlarged by `reach`.
@@ -117,20 +117,20 @@ private:
         }
     }
 
-    // A batch leaves out one-sided triangles with the center behind them. Those that the shape touched in the last step
-    // count all the same, and so do their neighbors: the center has tunneled through them.
+    // A batch skips one-sided triangles with the center behind them. Those that the shape touched in the last step, and
+    // their neighbors, still count: the center has tunneled through them.
     void CollideTunneled(size_t first, size_t count) {
         for (size_t i = first; i < first + count; ++i)
             if (HasTunneled(contacts_.views_[i])) CollideTriangle(static_cast<uint32_t>(i));
     }
-    // Only over the triangle itself: a body that tips over its edge gets behind it, too.
+    // Only over the triangle itself: a body that tips over its edge also gets behind it.
     bool HasTunneled(const TriangleView& view) {
         const float height = HeightAbove(view, center_);
         if (!(height < 0 && height > -a_.OuterRadius()) || !IsOver(view, center_, 0)) return false;
         return std::find(touched_.begin(), touched_.end(), view.id) != touched_.end() || ContinuesTouched(view);
     }
-    // Whether it shares a corner with a triangle that the shape touched and faces the same way: what lies behind an
-    // edge or another side of a thin wall is none of it.
+    // Whether it shares a corner with a triangle that the shape touched and faces the same way: excludes triangles
+    // behind an edge and the other side of a thin wall.
     bool ContinuesTouched(const TriangleView& view) {
         std::vector<TriangleView>& touched = contacts_.touched_;
         touched.resize(touched_.size());
@@ -201,8 +201,8 @@ private:
                                  contacts_.counters_);
     }
 
-    // onFace: the points before the triangle's face, where they are known; its edges and corners are still to be
-    // tested. found: libccd's contact, where it was asked.
+    // onFace: the points with the triangle's face, if known; its edges and corners are still to be tested. found:
+    // libccd's contact, if any.
     void CollideTriangle(uint32_t index, const Manifold* onFace = nullptr, const KnownContact* found = nullptr) {
         const PlacedTriangle triangle = Place(index);
         std::optional<KnownContact> asked;
@@ -242,7 +242,7 @@ private:
             CollideTriangle(index, &onFace, byLibccd);
     }
 
-    // A shape without rounding that reaches no active edge can touch the face alone.
+    // A shape without rounding that reaches no active edge can touch only the face.
     bool ReachesActiveEdge(const TriangleView& view, const TriangleInShape& triangle, float reach) const {
         if (core_.radius > 0) return true;
         for (uint32_t bits = view.activeEdges; bits != 0; bits &= bits - 1) {
@@ -253,7 +253,7 @@ private:
         return false;
     }
 
-    // Of a triangle whose edges are inactive, a shape without rounding can touch the face alone.
+    // A shape without rounding can touch only the face of a triangle whose edges are inactive.
     bool FacesAlone(const TriangleView& view) const { return core_.radius <= 0 && view.activeEdges == 0; }
     bool IsFaceContact(const TriangleView& view, const FaceContact& contact, const Manifold& onFace) const {
         return onFace.pointCount > 0 && contact.isDeepest && (contact.proven || FacesAlone(view));
@@ -334,7 +334,7 @@ private:
         contacts_.filter_.AddNearest(view, pair.DirectionInB(known.axis), overlaps, onFace, nearest);
     }
 
-    // Of a shape whose center has tunneled through the face, which is nearest to its back: its front alone pushes.
+    // For a shape whose center has tunneled through the face: contacts push to the front, although the back is closer.
     void AddTunneled(const TriangleView& view, const Manifold& onFace) {
         if (onFace.pointCount > 0) AddFace(view, onFace);
     }
@@ -356,7 +356,7 @@ private:
     const CollideSettings& settings_;
     SurfaceContacts& contacts_;
     PolyhedronStorage storage_;
-    Polyhedron core_;  // where it is one
+    Polyhedron core_;  // if it is polyhedral
     Matrix3 axes_;     // of the surface, in the shape's frame
     Vector3 center_;   // of the shape, in the surface's frame
     Vector3 motion_;   // of the center within the step, likewise

@@ -2,10 +2,10 @@
 // contacts of internal edges (InternalEdges.h). Called by the Collide stage, from many threads at once, each with a
 // SurfaceContacts of its own.
 //
-// Each triangle that the shape may reach is collided by itself. Contacts with nearly the same normal, on the same
-// material, are merged into one manifold of at most four points (SurfaceManifold.h). Fast bodies get one for their
-// inner ball besides (InnerBall.h). A face that was touched in the last step, or a neighbor of it, still pushes to its
-// front if a heavier body has pushed the center through it (tunneled).
+// Each triangle within reach is collided separately. Contacts with nearly the same normal, on the same material, are
+// merged into one manifold of at most four points (SurfaceManifold.h). Fast bodies get an additional one for their
+// inner ball (InnerBall.h). A face touched in the last step, or a neighbor of it, still pushes to its front if the
+// center was forced through it (tunneled).
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -16,11 +16,11 @@ namespace fulcrum {
 // Results and buffers, which are reused from call to call.
 class SurfaceContacts {
 public:
-    // Of the last call, in an order that depends on the shapes and poses alone.
+    // Results of the last call, in an order that depends only on shapes and poses.
     std::span<const SurfaceManifold> Manifolds() const { return {manifolds_.data(), manifoldCount_}; }
-    // Of the surface, that were tested.
+    // Triangles of the surface that were tested.
     size_t TriangleCount() const { return views_.size(); }
-    // Of the last call: what went wrong in libccd, where the method is Libccd.
+    // libccd's failures in the last call, with the method Libccd.
     const CollideCounters& Counters() const { return counters_; }
     size_t MemoryUsed() const;  // bytes, besides the object itself
 
@@ -43,9 +43,9 @@ struct SurfaceApproach {
 };
 
 // Fills `contacts` with the manifolds of a and the triangles of b within settings.speculativeDistance, in a's center
-// frame, as Collide does. One-sided triangles push to their front alone, and only shapes whose center of mass is there,
-// or that touched them or a neighbor of them in the last step. With the method Libccd, libccd decides for each triangle
-// within reach; which of them count as faces, edges and corners, and what becomes one manifold, is decided as above.
+// frame, as Collide does. One-sided triangles only push to their front, and only shapes whose center of mass is there,
+// or that touched them or a neighbor in the last step. With the method Libccd, libccd computes the contact with each
+// triangle within reach; classification as face, edge or corner and merging are as above.
 void CollideSurface(const ConvexShape& a, const SurfaceShape& b, const RelativePose& bInA,
                     const CollideSettings& settings, const SurfaceApproach& approach, SurfaceContacts& contacts);
 

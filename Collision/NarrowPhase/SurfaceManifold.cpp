@@ -10,9 +10,10 @@ namespace fulcrum {
 
 namespace {
 
-// Contacts whose normals are this near become one manifold: 2 degrees.
+// Contacts with normals this close are merged: 2 degrees.
 constexpr float kSameDirection = 0.9994f;
-// The deepest so many are enough to hold any shape; a huge one may touch thousands of triangles with different normals.
+// Only this many of the deepest are kept, enough for any shape; a huge one may touch thousands of triangles with
+// different normals.
 constexpr size_t kMostManifolds = 128;
 
 // Points of several manifolds, along one normal.
@@ -37,7 +38,7 @@ public:
 private:
     static constexpr int kRoom = 64;
 
-    // Of points with the same feature id the deepest stays.
+    // Of points with the same feature id the deepest is kept.
     void Add(ManifoldPoint point, const Vector3& itsNormal) {
         point.separation *= Dot(itsNormal, normal_);
         for (int i = 0; i < count_; ++i) {
@@ -49,7 +50,7 @@ private:
         points_[count_++] = point;
     }
     void Reduce() {
-        // Corners of the shape first: the reduction prefers what comes first, and they last while it slides from
+        // Corners of the shape first: the reduction prefers earlier points, and they persist while it slides from
         // triangle to triangle.
         int order[kRoom], n = 0;
         for (const bool corners : {true, false})

@@ -14,7 +14,7 @@ struct SurfaceManifold {
     uint8_t material;   // index into the surface's palette
 };
 
-// The least separation of its points, of which there is at least one, m.
+// The smallest separation of its points (at least one), m.
 inline float DeepestSeparation(const Manifold& manifold) {
     float least = manifold.points[0].separation;
     for (int i = 1; i < manifold.pointCount; ++i) {

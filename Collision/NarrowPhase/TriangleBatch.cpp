@@ -24,7 +24,7 @@ Lanes FarthestOfFew(const Polyhedron& core, const Vector& direction) {
 }  // namespace
 
 Lanes SurfaceProbe::Extent(const Vector& d, uint32_t lanes) const {
-    // Up to so many vertices, FarthestOfFew is faster than one vectorized search per direction.
+    // Up to this many vertices, FarthestOfFew is faster than one vectorized search per direction.
     constexpr int kFew = 24;
     if (core && core->vertexCount == 1) return Lanes(0.0f);
     Vector direction;

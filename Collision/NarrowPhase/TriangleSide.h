@@ -1,4 +1,4 @@
-// Where a point or a shape is with respect to a triangle of a surface. Used by SurfaceContact alone.
+// Position of a point or a shape relative to a triangle of a surface. Used by SurfaceContact alone.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -18,12 +18,12 @@ inline TriangleView Reversed(const TriangleView& view) {
     return r;
 }
 
-// Of a point above the triangle's plane, m; negative behind it.
+// Height of a point above the triangle's plane, m; negative behind it.
 inline float HeightAbove(const TriangleView& view, const Vector3& point) {
     return Dot(view.normal, Vector3(point - view.vertices[0]));
 }
 
-// Whether a ball of that radius, projected onto the triangle's plane, overlaps the triangle.
+// Whether the projection of a ball onto the triangle's plane overlaps the triangle.
 inline bool IsOver(const TriangleView& view, const Vector3& center, float radius) {
     for (int i = 0; i < 3; ++i) {
         const Vector3 edge = view.vertices[(i + 1) % 3] - view.vertices[i];

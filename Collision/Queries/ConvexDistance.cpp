@@ -10,12 +10,12 @@ namespace fulcrum {
 namespace {
 
 // The axis of least depth of overlapping cores. For a flat or pointed core, such as a triangle or a segment, EPA may
-// have nothing to expand: then the axis of less depth of libccd's and the line between the centers is taken.
+// fail: then libccd's axis or the center line is used, whichever has less depth.
 Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
-    // If the cores are far apart GJK's simplex may seem to contain the origin, by rounding. A plane between the cores
-    // proves that they are apart; their separation along its normal is the best that float gives.
+    // If the cores are far apart, GJK's simplex may contain the origin due to rounding. A separating plane proves that
+    // they are apart; their separation along its normal is the best result that floats allow.
     if (depth < 0) return axis;
     const Vector3 centerLine = Normalized(pair.position);
     if (pair.SeparationAlong(centerLine) > 0) return centerLine;
@@ -52,12 +52,12 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
     return axis;
 }
 
-// Of B the deepest point; of A the one that B would leave by.
+// B's deepest point, and the point of A through which B would leave.
 void FindDeepestPoints(const SupportPair& pair, ConvexSeparation& result) {
     const Vector3 deepest = pair.PointOfB(pair.b.SupportCore(-pair.DirectionInB(result.normal)));
     result.onB = deepest - result.normal * pair.b.ConvexRadius();
     result.onA = result.onB - result.normal * result.separation;
-    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // of shapes beyond the floats
+    result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // overflow
 }
 
 ConvexSeparation MeasureByLibccd(const SupportPair& pair, const RelativePose& bInA, float reach) {

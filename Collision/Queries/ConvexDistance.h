@@ -1,5 +1,5 @@
 // Signed distance of two convex shapes, by their support functions. Called by the queries. Thread-safe; allocates
-// nothing unless EPA gives up and libccd is used, or with the method Libccd.
+// nothing unless EPA fails and libccd is used, or with the method Libccd.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -8,14 +8,14 @@
 namespace fulcrum {
 
 struct ConvexSeparation {
-    bool isBeyond = false;             // farther apart than the reach: nothing else is set
-    float separation = 0;              // m, of the whole shapes; negative: minus the penetration depth
+    bool isBeyond = false;             // farther apart than `reach`: nothing else is set
+    float separation = 0;              // m, of the rounded shapes; negative: minus the penetration depth
     Vector3 normal = Vector3::Zero();  // unit, from A towards B, A's frame
     Vector3 onA = Vector3::Zero();     // m, A's frame: the surface's closest, or deepest, points
     Vector3 onB = Vector3::Zero();
 };
 
-// Exact to about 1e-6 of the shapes' size where apart, to 3e-5 of it where overlapping. `reach`: m, >= 0.
+// Exact to about 1e-6 of the shapes' size if apart, 3e-5 if overlapping. `reach`: m, >= 0.
 ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach,
                                NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 

@@ -139,7 +139,7 @@ bool ChordOfFaces(const ConvexHull& hull, float grown, const LinePiece& line, Ch
 
 enum class ChordAnswer : uint8_t { Miss, Exact, AtMost };
 
-// The chord, or one that is at least as long: of the shape with its rounding left sharp, or of its outer sphere.
+// The chord, or an upper bound: that of the shape enlarged with sharp edges, or of its bounding sphere.
 ChordAnswer ChordOf(const ConvexShape& shape, const LinePiece& line, Chord& chord) {
     const auto answer = [](bool hit, bool isExact) {
         return !hit ? ChordAnswer::Miss : isExact ? ChordAnswer::Exact : ChordAnswer::AtMost;
@@ -157,8 +157,8 @@ ChordAnswer ChordOf(const ConvexShape& shape, const LinePiece& line, Chord& chor
     }
 }
 
-// `to`: where the line has certainly left the shape. A shorter piece only ends the search earlier: the hit has the same
-// bits.
+// `to`: a point where the line has certainly left the shape. A shorter segment only ends the search earlier; the hit is
+// bit-identical.
 LineResult EnterBetween(const ConvexShape& shape, const LinePiece& line, float from, float to) {
     LineResult result;
     if (!(from <= std::min(to, line.to))) return result;

@@ -18,7 +18,7 @@ constexpr int kMaxTurningIterations = 200;
 
 using Vec4 = std::array<double, 4>;
 
-// The rounding of the shapes' surfaces, m: below it, touching and apart cannot be told apart.
+// The rounding error of the shapes' surfaces, m.
 double LeastTolerance(const ConvexShape& a, const ConvexShape& b) {
     const float small = std::min(a.OuterRadius(), b.OuterRadius()), large = std::max(a.OuterRadius(), b.OuterRadius());
     return double{1e-6f * small + 2e-7f * large + 1e-9f};
@@ -42,7 +42,7 @@ Position StartAxis(const Position& position) {
     return length > 1e-12 ? Position(position * (1 / length)) : Position(0, 1, 0);
 }
 
-// The weights of the corners of a tetrahedron around the origin; all zero where it is flat.
+// The weights of the corners of a tetrahedron around the origin; all zero if it is flat.
 Vec4 WeightsInside(const Simplex<SupportVertex>& s) {
     const auto volume = [](const Position& a, const Position& b, const Position& c) {
         return Dot<double>(a, Cross<double>(b, c));
@@ -89,7 +89,7 @@ CoreCastResult CoresOverlapAtStart() {
 }
 
 Quaternion TurnedBy(const Vector3& turn, const Quaternion& rotation) {
-    // Beyond so many radians float gives no meaningful rotation.
+    // rad: float has no meaningful rotation beyond that.
     constexpr float kFarthestTurn = 1e6f;
     if (!(turn.cwiseAbs().maxCoeff() < kFarthestTurn)) return rotation;
     return Normalized(RotationFromVector(turn) * rotation);
@@ -120,7 +120,7 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
     for (int i = 0; i < kMaxIterations; ++i) {
         SupportVertex vertex = pair.Support(at, axis);
         const double gap = Dot<double>(axis, vertex.w) - target;
-        // The closest points are near enough, and the separation along the axis agrees: the axis is the normal.
+        // The closest points are close enough, and the separation along the axis agrees: the axis is the normal.
         if (touches && gap >= -2 * tolerance) return HitAt(Touching(advanced), fraction, axis, PointOnA(simplex));
         bool moved = false;
         if (gap > 0) {
@@ -147,8 +147,7 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
         }
         axis = closest * (1 / distance);
         touches = distance - target <= tolerance;
-        // The closest points are too near each other to give a direction: the normal of the last separating plane is
-        // used.
+        // The closest points are too close to define a direction: the normal of the last separating plane is used.
         if (touches && advanced && distance <= 100 * least)
             return HitAt(Outcome::Hit, fraction, provenAxis, PointOnA(simplex));
     }
@@ -159,15 +158,16 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
 
 namespace {
 
-// For how long no point of two turning shapes comes nearer than the target distance along an axis n. Of each shape
+// Lower bound of the time for which two rotating shapes stay farther apart than the target distance along an axis n.
+// For each shape
 //     n . x(t + s) = n . (c + r) + s (n . d + r . (n x w)) + at most s^2 / 2 |w|^2 R,
 // r from its center c, R the radius of its core, w the turn, d the displacement: the linear part is extreme for the
-// shape's support along n + s (n x w). As a minimum of linear functions, that of B less that of A is concave in s. So
-// if the bound holds at the end of an interval and the shapes are apart at its beginning, it holds in between.
+// shape's support along n + s (n x w). The difference of B's and A's extremes is a minimum of linear functions, hence
+// concave in s. So if the bound holds at the end of an interval and the shapes are apart at its beginning, it holds in
+// between.
 class AxisAdvance {
 public:
-    // `gap`: by which B is farther away along the axis now than the target distance, > 0. `axis`, unit: in the motion's
-    // axes.
+    // `gap`: current separation along the axis minus the target distance, > 0. `axis`, unit: in the motion's axes.
     AxisAdvance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CorePoses& now,
                 const Vector3& axis, double gap)
         : a_(a, 1, axis, motion.turnOfA, now.rotationOfA),
@@ -176,7 +176,7 @@ public:
           approach_(-Dot<double>(axis.cast<double>(), motion.displacement.cast<double>())),
           bending_(a_.Bending() + b_.Bending()) {}
 
-    // Proven, in fractions of the motion: `remaining` where it reaches that far.
+    // Proven time step, as a fraction of the motion; at most `remaining`.
     double Step(double remaining) const {
         const double speed = approach_ + a_.Speed() + b_.Speed();
         if (speed * remaining <= gap_) return remaining;
@@ -199,7 +199,7 @@ public:
     }
 
 private:
-    // A shape that turns about its center, seen along the axis, or against it with sign -1.
+    // The extent of a shape rotating about its center along the axis, or against it with sign -1.
     class Turning {
     public:
         Turning(const ConvexShape& shape, float sign, const Vector3& axis, const Vector3& turn,
@@ -215,7 +215,7 @@ private:
               start_(isTurning_ ? Extreme(0) : 0) {}
 
         bool IsTurning() const { return isTurning_; }
-        double Speed() const { return double{Length(turned_)} * radius_; }  // at most, at the start; m per motion
+        double Speed() const { return double{Length(turned_)} * radius_; }  // upper bound at the start; m per motion
         double Bending() const { return bending_; }
         // Along the axis, m: of the points that are extreme in the linear part of their motion.
         double Extreme(double step) const {
@@ -256,7 +256,7 @@ struct Separated {
     bool coresOverlap;
 };
 
-// `from`, `to`: the part of the motion outside of which they do not touch.
+// `from`, `to`: the interval of the motion outside of which they do not touch.
 template <class Separate>
 CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                        const CoreCastLimits& limits, double tolerance, const Separate& separate, double from = 0,
@@ -278,7 +278,7 @@ CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMot
             return HitAt(fraction == 0 ? Outcome::AtStart : Outcome::Hit, fraction, known.axis.template cast<double>(),
                          known.onA);
         }
-        // Not shortened to maxFraction, so that the hit has the same bits for every maxFraction.
+        // Not shortened to maxFraction, so that the hit is bit-identical for every maxFraction.
         const double remaining = to - fraction;
         // Advances to half the tolerance from touching, so that the search ends there.
         const AxisAdvance advance(a, b, motion, poses, now.axis, now.gap - 0.5 * tolerance);
@@ -291,7 +291,7 @@ CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMot
     return HitAt(Outcome::Early, fraction, last.axis.cast<double>(), last.onA);
 }
 
-// The part of the motion in which the centers are no farther apart than `reach`; empty: never.
+// The interval of the motion in which the centers are no farther apart than `reach`; empty: never.
 struct MotionPart {
     double from = 0, to = -1;
 };
@@ -340,11 +340,11 @@ CoreCastResult CastByLibccd(const ConvexShape& a, const ConvexShape& b, const Co
         const std::optional<KnownContact> touch =
             FindLibccdContact(pair, pose, std::numeric_limits<float>::infinity(), unused);
         if (!touch) return {0, Vector3(0, 1, 0), Vector3::Zero(), true};  // not finite
-        // Later it is known how deep they are by rounding, and along which axis.
+        // At later times an overlap is only rounding error, and the axis is known.
         const bool coresOverlap = poses.fraction == 0 && touch->separation <= 0;
         return {double{touch->separation} - target, touch->axis, touch->onA, coresOverlap};
     };
-    // What is within the tolerance, but apart, and moves away straight does not touch, as in CastLinear.
+    // Shapes within the tolerance that are separated and move apart without rotation do not touch, as in CastLinear.
     if (!motion.IsTurning()) {
         const Separated start = separate(motion.At(0), Vector3(0, 1, 0));
         if (start.gap > 0 && Dot(start.axis, motion.displacement) >= 0) return {};

@@ -97,7 +97,7 @@ ClosestPoints Swapped(const ClosestPoints& found, const RelativePose& secondInFi
 }
 
 bool IsUsable(const RelativePose& pose, float maxDistance) {
-    return IsWithinReach(pose.position.cast<double>()) && IsTurn(pose.rotation) && maxDistance >= 0;
+    return IsWithinReach(pose.position.cast<double>()) && IsRotation(pose.rotation) && maxDistance >= 0;
 }
 
 }  // namespace

@@ -10,19 +10,19 @@ namespace fulcrum {
 
 struct Piece {
     const ConvexShape& shape;
-    RelativePose pose;  // in the frame of the shape that it is a piece of
+    RelativePose pose;  // in the frame of its shape
     SubShape subShape;
-    const TriangleCore* triangle = nullptr;  // the piece itself, where it is one
+    const TriangleCore* triangle = nullptr;  // the piece, if it is a triangle
     bool isTwoSided = true;                  // of the surface
 };
 
-// Shapes farther apart than this find nothing: squares of distances must be finite floats. Also rejects invalid
+// Shapes farther apart than this are not found: squares of distances must be finite floats. Also rejects invalid
 // rotations.
 inline constexpr double kFarthestApart = 1e18;  // m
 inline bool IsWithinReach(const Position& between) {
     return IsFinite(between) && between.cwiseAbs().maxCoeff() < kFarthestApart;
 }
-inline bool IsTurn(const Quaternion& q) { return IsFinite(q) && Abs(LengthSquared(q) - 1) < 0.01f; }
+inline bool IsRotation(const Quaternion& q) { return IsFinite(q) && Abs(LengthSquared(q) - 1) < 0.01f; }
 
 inline Bounds Inflated(const Bounds& bounds, float by) {
     Bounds b;
@@ -53,7 +53,7 @@ inline Bounds BoundsAt(const RelativePose& pose, const Bounds& bounds) {
     return b;
 }
 
-// Bounds, measured from `origin`, of a shape whose center frame is at `center`; rounded outwards.
+// Bounds, relative to `origin`, of a shape whose center frame is at `center`; rounded outwards.
 inline Bounds BoundsAbout(const Position& origin, const Shape& shape, const Pose& center) {
     const Bounds turned = BoundsAt({Vector3::Zero(), center.rotation}, shape.LocalBounds());
     const Position at = center.position - origin;

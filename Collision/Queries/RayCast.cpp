@@ -49,7 +49,7 @@ bool RayCaster::CastConvex(const ConvexShape& shape, const Pose& pose, const Ray
     const Vector3 point = (origin + displacement * nearest).cast<float>();
     const float reach = shape.OuterRadius() * 1.0001f;
     if (LengthSquared(point) > reach * reach) return false;
-    // Longer than the limit by more than later rounding, so that no hit within the limit is lost.
+    // Longer than the limit by more than later rounding errors, so that no hit within the limit is lost.
     const double upTo = (double{limit} * (1 + 0x1p-22) - nearest) * length_ + 0x1p-22 * double{reach};
     const LinePiece line{InverseRotate(pose.rotation, point), InverseRotate(pose.rotation, direction_),
                          static_cast<float>(-nearest * length_),

@@ -2,7 +2,7 @@
 // Thread-safe; allocates nothing.
 //
 // Convex shapes and half spaces are solid: a ray that starts inside, or on the surface, hits at fraction 0, with a
-// normal against the ray. With `hollow`, a ray that starts inside hits them where it leaves, and only with `backFaces`.
+// normal against the ray. With `hollow`, a ray that starts inside hits them at its exit, and only with `backFaces`.
 // Triangles follow SurfaceShape. A ray that is not finite or has no length hits nothing.
 #pragma once
 
@@ -26,31 +26,30 @@ struct RayCastSettings {
 struct RayHit {
     float fraction = 0;  // of the displacement
     SubShape subShape{};
-    Vector3 normal = Vector3::Zero();  // unit, outwards; against the ray where that came from behind or began inside
+    Vector3 normal = Vector3::Zero();  // unit, outwards; opposite to the ray if it hit a back face or began inside
     bool isBackFace = false;
 };
 
-// A ray, prepared to be cast at any number of shapes. Everything is in the frame of the ray, the world's or another,
-// and exact however far from its origin: only differences are rounded to float.
+// A ray prepared for casts against any number of shapes. Everything is in the ray's frame (the world's or another), and
+// precise however far from its origin: only differences are rounded to float.
 class RayCaster {
 public:
     RayCaster() = default;  // not valid
     explicit RayCaster(const Ray& ray);
-    bool IsValid() const { return length_ > 0; }  // else it hits nothing
+    bool IsValid() const { return length_ > 0; }  // if not, it hits nothing
     const Ray& GetRay() const { return ray_; }
 
-    // The closest hit; of equally close ones that of the lowest child, then triangle. `pose` is that of the shape's
-    // center frame. False: none, `hit` is unchanged.
+    // The closest hit; ties are resolved by the lowest child, then triangle. `pose` is that of the shape's center
+    // frame. Returns false, leaving `hit` unchanged, if there is none.
     bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, RayHit& hit) const {
         return CastClosest(shape, pose, settings, settings.maxFraction, hit);
     }
-    // The same for hits up to `limit` <= settings.maxFraction. Hits within the limit have the same bits for every
-    // limit; one a little farther may be found or not. So the closest hit of many shapes does not depend on their
-    // order.
+    // The same for hits up to `limit` <= settings.maxFraction. Hits within the limit are bit-identical for every limit;
+    // one slightly beyond may be found or not. So the closest hit of many shapes does not depend on their order.
     bool CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
                      RayHit& hit) const;
-    // The same for several rays at a surface, which costs less where they lie close together: for casters[i], limits[i]
-    // and hits[i] where bit i of `which` is set, i < kMostRays. Returns the bits of those that hit; the other hits are
+    // The same for several rays against a surface, cheaper if they are close together: for casters[i], limits[i] and
+    // hits[i] if bit i of `which` is set, i < kMostRays. Returns the bits of those that hit; the other hits are
     // unchanged.
     static constexpr int kMostRays = SurfaceShape::kMostRays;
     static uint32_t CastClosest(const RayCaster* casters, uint32_t which, const SurfaceShape& shape, const Pose& pose,
@@ -58,7 +57,7 @@ public:
     // Whether there is any.
     bool IsHit(const Shape& shape, const Pose& pose, const RayCastSettings& settings) const;
     // Calls visit(const RayHit&) for the hit of each convex shape, child or half space and for all hits of triangles,
-    // in no order, until it returns false. False: it did.
+    // in no particular order, until it returns false. Returns false if it did.
     template <class Visitor>
     bool CastAll(const Shape& shape, const Pose& pose, const RayCastSettings& settings, Visitor&& visit) const;
 
@@ -71,7 +70,7 @@ private:
                      RayHit& hit) const;
     bool Search(const Shape& shape, const Pose& pose, const RayCastSettings& settings, void* context,
                 HitFunction found) const;
-    // The ray in the frame of a surface, starting at the surface's bounds, and how much of it was cut off.
+    // The ray in the frame of a surface, starting at the surface's bounds, and the length that was cut off.
     SurfaceRay InFrameOf(const SurfaceShape& shape, const Pose& pose, bool backFaces, double& skipped) const;
     // The largest fraction of the cut ray.
     static float LeftOf(const RayCastSettings& settings, float limit, double skipped);

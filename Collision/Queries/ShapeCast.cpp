@@ -26,7 +26,7 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion, NarrowPhaseMethod method)
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)), method_(method) {
-    isValid_ = IsFinite(motion.pose.position) && IsTurn(motion.pose.rotation) &&
+    isValid_ = IsFinite(motion.pose.position) && IsRotation(motion.pose.rotation) &&
                IsWithinReach(motion.displacement.cast<double>()) && IsWithinReach(motion.turn.cast<double>()) &&
                IsWithinReach(motion.turnOfOther.cast<double>()) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
 }
@@ -67,6 +67,15 @@ bool IsWithinFloats(const ShapeHit& hit) {
 
 }  // namespace
 
+// A motion along a surface is not exactly parallel to it, due to rounding: one that penetrates by less than this over
+// its whole length counts as parallel.
+bool ShapeCaster::Separates(const ShapeHit& hit) const {
+    constexpr float kAlong = 1e-4f;  // of the motion
+    const Vector3 arm = (hit.position - motion_.pose.position).cast<float>();
+    const Vector3 motion = motion_.displacement + Cross<float>(motion_.turn, arm);
+    return Dot(motion, hit.normal) >= -kAlong * Length(motion);
+}
+
 bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit,
                             const Vector3& turn) const {
     const Pose at = pose * piece.pose;
@@ -83,11 +92,14 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     hit.fraction = std::min(static_cast<float>(cast.fraction), settings.maxFraction);
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
-        if (settings.measureDepth) MeasureDepth(piece, at, motion, hit);
-        return !settings.measureDepth || IsWithinFloats(hit);
+        if (!settings.measureDepth && !settings.ignoreSeparating) return true;
+        MeasureDepth(piece, at, motion, hit);
+        if (!IsWithinFloats(hit) || (settings.ignoreSeparating && Separates(hit))) return false;
+        if (!settings.measureDepth) hit = {.fraction = hit.fraction, .subShape = hit.subShape, .isEarly = hit.isEarly};
+        return true;
     }
     if (isOneSided && motion.IsTurning()) {
-        // A turning shape may touch an open edge from any side: its center tells from which side it comes.
+        // A rotating shape may touch an open edge from any side: its center determines from which side it comes.
         const Position center =
             motion.PositionAt(cast.fraction) - piece.triangle->SupportCore(Vector3(1, 0, 0)).cast<double>();
         if (Dot<double>(center, piece.triangle->Normal().cast<double>()) < 0) return false;
@@ -116,6 +128,7 @@ bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCas
         const double height =
             Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>()));
         hit.depth = std::max(0.0f, static_cast<float>(double{plane.Offset()} - height));
+        if (settings.ignoreSeparating && Separates(hit)) return false;
     }
     return IsWithinFloats(hit);
 }
@@ -194,7 +207,7 @@ bool ShapeCaster::CastClosest(const Shape& other, const Pose& pose, const ShapeC
     } best{hit};
     Search(other, pose, settings, &best, [](void* context, const ShapeHit& found, ShapeCastSettings& limits) -> bool {
         Best& b = *static_cast<Best*>(context);
-        // Of what overlaps at the start the deepest counts.
+        // Of overlaps at the start the deepest is the hit.
         const bool isCloser =
             !b.found || found.fraction < b.hit.fraction ||
             (found.fraction == b.hit.fraction &&

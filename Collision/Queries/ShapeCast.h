@@ -1,11 +1,12 @@
-// A convex shape that moves straight, and may turn at a constant rate, against a single shape at a pose. Called
+// Casts a convex shape that moves along a line and may rotate at a constant rate against a single shape at a pose.
+// Called
 // by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates
 // nothing unless the depth of a degenerate overlap is measured, or with the method Libccd.
 //
 // No hit is missed, however thin or fast the shapes. Shapes that overlap at the start are hit at fraction 0, with
-// penetration depth and normal. One-sided triangles are hit from the front alone: a shape that moves along their
-// normal, or reaches them from behind, passes. A motion that is not finite, or of more than 1e18 m or rad, or from
-// farther away, hits nothing; one of no length hits what overlaps it.
+// penetration depth and normal. One-sided triangles are only hit from the front: a shape that moves along their normal,
+// or reaches them from behind, passes. A motion that is not finite, or longer than 1e18 m or rad, or from farther away,
+// hits nothing; one of zero length hits what it overlaps.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Collide.h>
@@ -24,7 +25,7 @@ struct ShapeMotion {
     Pose pose{};                             // of the shape's center frame at the start
     Vector3 displacement = Vector3::Zero();  // m, of the center, over the whole motion
     Vector3 turn = Vector3::Zero();          // rad, over the whole motion: the rotation vector, about the center
-    // The same of the other shape, about its own center. Only of convex ones; others rest.
+    // The same for the other shape, about its own center. Only for convex shapes.
     Vector3 turnOfOther = Vector3::Zero();
 };
 
@@ -32,7 +33,10 @@ struct ShapeCastSettings {
     bool backFaces = false;  // triangles are hit from behind
     float maxFraction = 1;   // 0 .. 1, of the motion; only hits up to here
     float separation = 0;    // m, >= 0: shapes this far apart count as touching
-    float tolerance = 0;     // m, >= 0: a hit may be found that much too far away; 0: to about 1e-6 of the shapes' size
+    float tolerance = 0;     // m, >= 0: a hit may be reported this much too late; 0: to about 1e-6 of the shapes' size
+    // A shape that touches or overlaps at the start is not hit if the motion begins along its surface or out of it, as
+    // for a character that stands on a floor and walks. A motion of zero length then hits nothing at the start.
+    bool ignoreSeparating = false;
     bool measureDepth = true;  // otherwise overlaps at the start have depth, normal and position zero
 };
 
@@ -42,10 +46,10 @@ struct ShapeHit {
     Vector3 normal = Vector3::Zero();      // unit, from the other shape towards the one that moves
     Position position = Position::Zero();  // m, on the surface of the other shape
     float depth = 0;                       // m, >= 0: how far they overlap at the start
-    bool isEarly = false;  // iteration limit reached: they do not touch before, but perhaps later or never
+    bool isEarly = false;  // iteration limit reached: they do not touch before, but maybe later or never
 };
 
-// Everything is in the frame of the motion, the world's or another, and exact however far from its origin.
+// Everything is in the frame of the motion (the world's or another), and precise however far from its origin.
 class ShapeCaster {
 public:
     ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion,
@@ -54,14 +58,14 @@ public:
     // A box, relative to the moving center, that contains the shape during the whole motion.
     const Bounds& BoundsAboutCenter() const { return bounds_; }
 
-    // The closest hit; of equally close ones the deepest, then that of the lowest child and triangle. `pose` is that of
-    // the other shape's center frame. False: none, `hit` is unchanged.
+    // The closest hit; ties are resolved by the deepest, then the lowest child and triangle. `pose` is that of the
+    // other shape's center frame. Returns false, leaving `hit` unchanged, if there is none.
     bool CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
-    // Calls visit(const ShapeHit&) for the first hit of each convex shape, child, triangle or half space, in no order,
-    // until it returns false. False: it did.
+    // Calls visit(const ShapeHit&) for the first hit of each convex shape, child, triangle or half space, in no
+    // particular order, until it returns false. Returns false if it did.
     template <class Visitor>
     bool CastAll(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
-    // The same, where visit(const ShapeHit&) returns the new largest fraction, negative to stop.
+    // The same, but visit(const ShapeHit&) returns the new largest fraction, negative to stop.
     template <class Visitor>
     void Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
 
@@ -76,6 +80,8 @@ private:
     bool CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit,
                    const Vector3& turn = Vector3::Zero()) const;
     bool CastPlane(const Shape& plane, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
+    // Whether the motion at its start leads out of the overlapping shape, or along its surface.
+    bool Separates(const ShapeHit& hit) const;
     void MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const;
     CoreMotion RelativeTo(const Pose& pose) const;
 

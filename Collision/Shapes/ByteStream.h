@@ -1,5 +1,5 @@
 // Numbers as little-endian bytes and back. Used by the shape files. The reader checks every length before it reads or
-// allocates; once it has run out, it gives zeros and HasFailed() is true.
+// allocates; past the end it returns zeros, and HasFailed() is true.
 #pragma once
 
 #include <Fulcrum/Math/Quaternion.h>
@@ -36,7 +36,7 @@ public:
     void WriteAll(std::span<const T> values) {
         for (const T& value : values) Write(value);
     }
-    // Writes what `content` writes, after its length in 8 bytes.
+    // Writes the output of `content`, preceded by its length in 8 bytes.
     template <class Content>
     void WriteWithLength(Content&& content) {
         const size_t at = bytes_.size();
@@ -95,7 +95,7 @@ public:
         values.resize(count);
         for (T& value : values) Read(value);
     }
-    // A block that its length precedes.
+    // A block preceded by its length.
     ByteReader ReadBlock() {
         const uint64_t length = Get<uint64_t>();
         if (length > bytes_.size()) hasFailed_ = true;

@@ -12,6 +12,24 @@ namespace fulcrum {
 Compound::Compound() : CompoundShape(ShapeType::Compound) {}
 Compound::~Compound() = default;
 
+// The children of a compound whose center frame is at `pose`, with densities that make `density` on average.
+static void AddChildrenOf(const CompoundShape& compound, const RelativePose& pose, float density,
+                          std::vector<CompoundShape::Child>& children) {
+    double volume = 0, mass = 0;
+    for (const CompoundShape::Child& child : compound.Children()) {
+        if (!child.shape) continue;
+        volume += double{child.shape->Mass().volume};
+        mass += double{child.density} * double{child.shape->Mass().volume};
+    }
+    for (const CompoundShape::Child& child : compound.Children()) {
+        if (!child.shape) continue;
+        const RelativePose own = compound.PoseOf(child);
+        children.push_back({child.shape,
+                            {pose.Transform(own.position), pose.rotation * own.rotation},
+                            static_cast<float>(double{density} * double{child.density} * volume / mass)});
+    }
+}
+
 Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSettings> children,
                                                          const Vector3& centerOffset) {
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};
@@ -20,7 +38,7 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
     std::vector<double> densities;
     for (const ChildSettings& child : children) {
         const std::string name = Message("child %d", static_cast<int>(solids.size()));
-        if (const Status status = Check(child, name.c_str()); !status) return status.GetError();
+        if (const Status status = Check(child, name.c_str(), true); !status) return status.GetError();
         solids.push_back(
             Transformed(ToSolidMass(child.shape->Mass()), Normalized(child.rotation), child.position.cast<double>()));
         densities.push_back(double{child.density});
@@ -43,9 +61,12 @@ Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSe
         const Position center = solids[i].center - whole.center;
         const std::string name = Message("child %d", static_cast<int>(i));
         if (const Status status = CheckPlace(name.c_str(), center.cast<float>()); !status) return status.GetError();
-        posed.push_back({std::static_pointer_cast<const ConvexShape>(children[i].shape),
-                         {center.cast<float>(), Normalized(children[i].rotation)},
-                         children[i].density});
+        const RelativePose pose{center.cast<float>(), Normalized(children[i].rotation)};
+        if (children[i].shape->IsCompound())
+            AddChildrenOf(static_cast<const CompoundShape&>(*children[i].shape), pose, children[i].density, posed);
+        else
+            posed.push_back(
+                {std::static_pointer_cast<const ConvexShape>(children[i].shape), pose, children[i].density});
     }
     const std::shared_ptr<Compound> compound(new Compound);
     compound->Assemble(std::move(posed), mass.Value());

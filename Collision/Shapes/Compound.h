@@ -13,8 +13,10 @@ public:
     // Mass is the sum of the children's (overlaps count twice), scaled so that the whole has density 1 on average.
     // `centerOffset`, m, moves the center of mass from there, as ballast would; the inertia is then that about the new
     // center (parallel axes). InnerRadius is the smallest child's, since continuous collision must stop the thinnest.
-    // Errors: Degenerate (no child), Unsupported (null or not convex child), NonFinite, Unnormalized, NonPositive,
-    // OutOfRange (the inertia is no normal float).
+    // A child that is a compound is replaced by its children, with consecutive indices; its mass is that of the
+    // compound, with its center offset, at the density given here. A mutable one is copied in its present state.
+    // Errors: Degenerate (no child), Unsupported (null child, or one that is neither convex nor a compound), NonFinite,
+    // Unnormalized, NonPositive, OutOfRange (the inertia is no normal float).
     static Result<std::shared_ptr<const Compound>> Create(std::span<const ChildSettings> children,
                                                           const Vector3& centerOffset = Vector3::Zero());
 

@@ -10,9 +10,9 @@ CompoundShape::~CompoundShape() = default;
 
 std::span<const CompoundShape::Child> CompoundShape::Children() const { return children_; }
 
-Status CompoundShape::Check(const ChildSettings& child, const char* name) {
+Status CompoundShape::Check(const ChildSettings& child, const char* name, bool mayBeCompound) {
     if (!child.shape) return Error{ErrorCode::Unsupported, Message("%s has no shape", name)};
-    if (!child.shape->IsConvex()) {
+    if (!child.shape->IsConvex() && !(mayBeCompound && child.shape->IsCompound())) {
         return Error{ErrorCode::Unsupported,
                      Message("%s is a %s: children must be convex", name, ShapeTypeName(child.shape->Type()))};
     }

@@ -14,7 +14,7 @@ public:
     ~CompoundShape() override;
 
     struct ChildSettings {
-        ShapePtr shape;                      // convex
+        ShapePtr shape;                      // convex; of a Compound, another compound, too
         Vector3 position = Vector3::Zero();  // of the child's user frame in the compound's user frame, m
         Quaternion rotation{};               // unit
         float density = 1;                   // relative to the other children's, > 0
@@ -30,8 +30,8 @@ public:
     const Child& ChildAt(uint32_t index) const { return children_[index]; }
     // The children's boxes in the children's frame, by index.
     const BoundsTree& Tree() const { return tree_; }
-    // The origin of the children's frame in the center frame, m; axes are the same. Zero but for mutable compounds,
-    // whose children stay where they are in the user's frame while the center of mass moves.
+    // The origin of the children's frame in the center frame, m; axes are the same. Zero except for mutable compounds,
+    // whose children keep their poses in the user's frame when the center of mass moves.
     Vector3 Origin() const {
         return type_ == ShapeType::Compound ? Vector3(Vector3::Zero()) : Vector3(-mass_.centerOfMass);
     }
@@ -44,8 +44,9 @@ public:
 
 protected:
     using Shape::Shape;
-    // Errors: Unsupported (null or not convex), NonFinite, Unnormalized, NonPositive; they begin with `name`.
-    static Status Check(const ChildSettings& child, const char* name);
+    // Errors: Unsupported (null; not convex, nor a compound where one may be), NonFinite, Unnormalized, NonPositive;
+    // they begin with `name`.
+    static Status Check(const ChildSettings& child, const char* name, bool mayBeCompound = false);
     // The child's box in the children's frame.
     static Bounds BoundsOf(const Child& child);
 

@@ -1,6 +1,6 @@
 // Mass, center of mass, inertia, bounds and smallest radius of all children, updated as single children change. Used by
 // MutableCompound. A tree of partial sums, eight to a node: a change takes logarithmic time, and the bits of the result
-// depend on the children and their indices alone, not on the order of edits.
+// depend only on the children and their indices, not on the order of edits.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>

@@ -35,7 +35,7 @@ Status CheckInput(std::span<const Vector3> points, const ConvexHullSettings& set
     return Done{};
 }
 
-// By halves: a third of the latency of one lane after another. The order makes no difference to a maximum.
+// By halving: a third of the latency of a sequential loop. The order does not affect a maximum.
 float LargestOf(const Wide<kLanes>& wide) {
     if constexpr (kLanes < 4) return HorizontalMax(wide);
     alignas(64) float lanes[kLanes < 4 ? 4 : kLanes];
@@ -194,9 +194,9 @@ Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vec
 
 namespace {
 
-// Of `count` vectors by lanes, a multiple of kLanes and at most 256, the first of those that lie farthest along
-// `direction`; 0 where that is not a number. Largest value first, then the first vector that has it: no index is
-// carried through the search, and no branch depends on where it is.
+// The index of the first of `count` vectors (in lanes, a multiple of kLanes, at most 256) that is farthest along
+// `direction`; 0 if NaN. Finds the largest value first, then the first vector with it: the search carries no index and
+// has no data-dependent branches.
 size_t FirstFarthest(const float* laneX, const float* laneY, const float* laneZ, int count, const Vector3& direction) {
     using Lanes = Wide<kLanes>;
     const Lanes x(direction.x()), y(direction.y()), z(direction.z());

@@ -32,8 +32,8 @@ public:
         uint8_t left, right;  // faces: `left` runs from -> to counter-clockwise
     };
 
-    // Hull of at least 4 points that span a volume, coordinates in meters. Points are dropped and faces merged where
-    // that moves the surface by less than about 2e-7 of the largest coordinates, or a thousandth of the thickness.
+    // Hull of at least 4 points that span a volume, coordinates in meters. Points are dropped and faces merged if that
+    // moves the surface by less than about 2e-7 of the largest coordinates, or a thousandth of the thickness.
     // At most 255 faces: a hull with more is simplified too.
     // Errors: NonFinite, Degenerate (fewer than 4 points, coincident, collinear or coplanar: the message says which),
     // OutOfRange (maxVertices; a negative convexRadius or one that leaves no core; an inertia that is no normal float).

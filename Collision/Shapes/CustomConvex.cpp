@@ -93,7 +93,7 @@ Status CustomConvex::Complete() {
         const Position c = surface.vertices[static_cast<size_t>(surface.indices[i + 2])].cast<double>();
         const Position normal = Cross<double>(Position(b - a), Position(c - a));
         const double length = std::sqrt(Dot<double>(normal, normal));
-        // Normals of slivers are mere rounding.
+        // Normals of slivers are only rounding errors.
         if (length <= 1e-7 * double{outerRadius_} * double{outerRadius_}) continue;
         innerRadius_ = std::min(innerRadius_, static_cast<float>(Dot<double>(normal, a) / length));
     }

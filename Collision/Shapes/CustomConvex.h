@@ -18,7 +18,8 @@ namespace fulcrum {
 class CustomConvex : public ConvexShape {
 public:
     // The point of the core that lies farthest along `direction` (any length > 0), in a frame of the user's choice. A
-    // pure function, called by many threads at once; the same bits everywhere where it keeps to + - * / and std::sqrt.
+    // pure function, called by many threads at once; bit-identical on all machines if it only uses + - * / and
+    // std::sqrt.
     virtual Vector3 FarthestPoint(const Vector3& direction) const = 0;
 
     Vector3 SupportCore(const Vector3& direction) const final { return FarthestPoint(direction) - mass_.centerOfMass; }

@@ -168,7 +168,7 @@ void HeightField::MakeLevels() {
     ranges_.resize(first);
 }
 
-// Of the samples around a block of level 0; those of holes count, too.
+// Range of the samples around a block of level 0; includes those of holes.
 HeightField::Range HeightField::RangeOfBlock(uint32_t blockX, uint32_t blockZ) const {
     Range range{INFINITY, -INFINITY};
     const uint32_t endX = std::min(sampleCountX_, (blockX + 1) * kBlock + 1);
@@ -182,7 +182,7 @@ HeightField::Range HeightField::RangeOfBlock(uint32_t blockX, uint32_t blockZ) c
     return range;
 }
 
-// After heights of these cells changed.
+// Called after heights of these cells changed.
 void HeightField::UpdateRanges(CellRange x, CellRange z) {
     x = {x.first / kBlock, x.last / kBlock};
     z = {z.first / kBlock, z.last / kBlock};

@@ -1,6 +1,6 @@
 // Height field: a grid of heights over the x-z plane, two triangles a cell, with holes and a material a cell. For
-// static and kinematic bodies. Queries may run on any number of threads at once. The one shape that can change:
-// SetHeights and SetCells must not run while a step or a query that may see the shape does.
+// static and kinematic bodies. Queries may run on any number of threads at once. Mutable: SetHeights and SetCells must
+// not run concurrently with a step or a query that may access the shape.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -36,13 +36,13 @@ class HeightField final : public SurfaceShape {
 public:
     ~HeightField() override;
 
-    // The caller may keep the pointer to edit the field; bodies take it as any shape.
+    // The caller may keep the pointer to edit the field; bodies use it like any shape.
     // Errors: NonFinite (names the sample), NonPositive (a cell size), OutOfRange (counts, lengths of the spans, a
     // material, a height beyond the limits, coordinates that are no floats), Degenerate (every cell is a hole).
     static Result<std::shared_ptr<HeightField>> Create(const HeightFieldSettings& settings);
 
     // Replace the heights of the samples x0 .. x0 + countX - 1, z0 .. z0 + countZ - 1, or the same of cells, row by row
-    // along x. Return the bounds of all that changed, before and after: sleeping bodies within may have lost their
+    // along x. Return the bounds of the changed part, before and after: sleeping bodies within may have lost their
     // support. LocalBounds() may change. Errors as in Create, and OutOfRange for a rectangle that is not inside; then
     // nothing has changed. SetCells may make all cells holes.
     Result<Bounds> SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
@@ -66,7 +66,7 @@ public:
     const Vector3& Origin() const { return origin_; }
     HeightPrecision Precision() const { return precision_; }
     float ActiveEdgeCosine() const { return activeEdgeCosine_; }
-    // The stored height: for Steps16, the step nearest to what was set.
+    // The stored height: for Steps16, the step nearest to the given height.
     float Height(uint32_t x, uint32_t z) const { return HeightOf(z * sampleCountX_ + x); }
     uint8_t Cell(uint32_t x, uint32_t z) const { return CellOf(z * CellCountX() + x); }
     bool IsHole(uint32_t x, uint32_t z) const { return Cell(x, z) == kHoleCell; }

@@ -84,7 +84,7 @@ void Merger::MergeCoplanar() {
     }
 }
 
-// Flattest seams first, so that a face's large triangles merge before the slivers at its rim.
+// Flattest edges first, so that a face's large triangles merge before the slivers at its boundary.
 void Merger::MergeNearlyCoplanar() {
     std::vector<Seam> seams;
     const auto height = [this](int t, int other) {

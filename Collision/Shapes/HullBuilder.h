@@ -29,9 +29,9 @@ struct HullLimits {
 };
 
 // The hull of `points` (finite). Every edge belongs to two faces, every vertex to three or more, and two faces share at
-// most one edge. Where the limits did not bind, no point is farther outside a face than 3 times the mesh's tolerance,
-// which is that of Quickhull. Where they did, the vertices are those that Quickhull found first, the farthest ones; the
-// hull then lies inside the exact one. Error: Degenerate.
+// most one edge. If the limits were not reached, no point is farther outside a face than 3 times the mesh's tolerance,
+// which is that of Quickhull. If they were, the vertices are those that Quickhull found first, the farthest ones; the
+// hull is then inside the exact one. Error: Degenerate.
 Result<HullMesh> BuildHull(std::span<const Position> points, const HullLimits& limits = {});
 
 // Whether the mesh is a closed polyhedron as BuildHull guarantees: edges in pairs, vertex degrees, Euler's V - E + F =

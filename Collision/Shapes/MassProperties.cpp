@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -50,8 +50,8 @@ struct PrincipalAxes {
 };
 PrincipalAxes Diagonalized(const Sym3<double>& tensor);
 
-// Principal form in float. Error: OutOfRange where the volume or a moment of inertia is no positive normal float, which
-// happens to solids of about 1e-7 m and 1e7 m.
+// Principal form in float. Error: OutOfRange if the volume or a moment of inertia is not a positive normal float, which
+// happens at sizes of about 1e-7 m and 1e7 m.
 Result<MassProperties> ToMassProperties(const SolidMass& solid);
 
 }  // namespace fulcrum

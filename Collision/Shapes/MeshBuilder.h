@@ -1,4 +1,4 @@
-// Builds the tree of a triangle mesh. Called by TriangleMesh::Create; the same bits for any ParallelLoop.
+// Builds the tree of a triangle mesh. Called by TriangleMesh::Create; the result is bit-identical for any ParallelLoop.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/MeshRepair.h>
@@ -10,7 +10,8 @@
 namespace fulcrum {
 
 // Top down by the surface area heuristic in bins. Source: Wald, "On fast Construction of SAH-based Bounding Volume
-// Hierarchies", 2007. `mesh` has at least one triangle; `materials` has one a triangle of the repaired mesh, or none.
+// Hierarchies", 2007. `mesh` has at least one triangle; `materials` has one per triangle of the repaired mesh, or is
+// empty.
 MeshTree BuildMeshTree(const RepairedMesh& mesh, std::span<const uint8_t> materials, bool keepSources,
                        const ParallelLoop& parallel);
 

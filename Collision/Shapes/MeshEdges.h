@@ -7,11 +7,11 @@
 namespace fulcrum {
 
 struct MeshEdges {
-    std::vector<uint8_t> active;  // a byte a triangle, bit i its edge from corner i to i + 1
+    std::vector<uint8_t> active;  // one byte per triangle, bit i: its edge from corner i to i + 1
     uint32_t boundaryEdges = 0, irregularEdges = 0;
 };
 
-// Of the vertices times `scale`, fronts kept (where it mirrors, corners 1 and 2 change places, and the edges with
+// For the vertices times `scale`, keeping front sides (a mirroring scale swaps corners 1 and 2, and the edges with
 // them).
 MeshEdges FindActiveEdges(const MeshTree& tree, const Vector3& scale, float cosine, bool isTwoSided);
 

@@ -10,7 +10,7 @@
 
 namespace fulcrum {
 
-// How often something was repaired, and where first (an index of the input).
+// The number of repairs of a kind, and the first one (an index of the input).
 struct MeshFinding {
     uint32_t count = 0;
     uint32_t first = 0;
@@ -20,7 +20,7 @@ struct MeshFinding {
 };
 
 struct MeshReport {
-    MeshFinding weldedVertices;       // made one with an earlier vertex
+    MeshFinding weldedVertices;       // merged with an earlier vertex
     MeshFinding unusedVertices;       // dropped: no remaining triangle uses them
     MeshFinding degenerateTriangles;  // dropped: no area
     MeshFinding duplicateTriangles;   // dropped: the same vertices and orientation as an earlier one
@@ -34,16 +34,17 @@ struct MeshReport {
 
 struct RepairedMesh {
     std::vector<Vector3> vertices;
-    std::vector<uint32_t> indices;  // three a triangle
+    std::vector<uint32_t> indices;  // three per triangle
     std::vector<uint32_t> sources;  // the input's number of each triangle
 };
 
 // Whether a triangle is higher than `weldDistance` m and 1e-6 of its longest edge.
 bool HasArea(const Vector3& a, const Vector3& b, const Vector3& c, double weldDistance);
 
-// Vertices within `weldDistance` m of an earlier one become that one. A triangle has no area where its height is below
+// Vertices within `weldDistance` m of an earlier one become that one. A triangle has no area if its height is below
 // `weldDistance` or 1e-6 of its longest edge.
-// Errors: NonFinite, OutOfRange (an index), Degenerate (nothing left, or indices that three does not divide).
+// Errors: NonFinite, OutOfRange (an index), Degenerate (nothing left, or a number of indices that is no multiple of
+// three).
 Result<RepairedMesh> RepairMesh(std::span<const Vector3> vertices, std::span<const uint32_t> indices,
                                 float weldDistance, MeshReport& report);
 

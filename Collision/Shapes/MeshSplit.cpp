@@ -22,7 +22,7 @@ struct Bins {
     }
 };
 
-// How centers fall into bins; the same expression sorts the boxes to their sides.
+// Maps centers to bins; the same expression partitions the boxes.
 struct Binning {
     float from[3], scale[3];
     int BinOf(const TriangleBox& box, int axis) const {

@@ -51,14 +51,14 @@ struct SplitRules {
     uint32_t smallest = 1;
     uint32_t leaf = 0;
     uint32_t mostLeaves = 0;
-    bool byCount = false;  // halves, whatever their boxes
+    bool byCount = false;  // split by count, independent of the boxes
     bool Allow(uint32_t left, uint32_t right) const {
         return left >= smallest && right >= smallest &&
                (leaf == 0 || (left + leaf - 1) / leaf + (right + leaf - 1) / leaf <= mostLeaves);
     }
 };
 
-// Partitions the set, of at least two boxes, into two sides. The resulting order depends on the boxes alone.
+// Partitions the set, of at least two boxes, into two sides. The resulting order depends only on the boxes.
 void Split(std::span<TriangleBox> boxes, const BoxSet& set, const SplitRules& rules, const ParallelLoop& parallel,
            BoxSet& left, BoxSet& right);
 

@@ -2,9 +2,9 @@
 //
 // Eight-way nodes of 80 bytes. The boxes of the children are given in 1/255ths of the node's own box, rounded outwards.
 // A child is a node or a leaf of up to eight triangles. Nodes come before their children, and the triangles of a node's
-// leaves are consecutive, so that a child takes one byte besides its box. Vertices are numbered in the order in which
-// the triangles use them first. So the vertices of 64 triangles in a row mostly lie within 65,536 of each other, and an
-// index takes two bytes; where they do not, four.
+// leaves are consecutive, so that a child takes one byte in addition to its box. Vertices are numbered in the order in
+// which the triangles use them first. So the vertices of 64 consecutive triangles mostly have numbers within 65,536 of
+// each other, and an index takes two bytes; otherwise four.
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>
@@ -80,7 +80,8 @@ struct MeshTree {
     static constexpr uint32_t kPageBits = 6;  // 64 triangles share a page of indices
     static constexpr uint32_t kWideIndices = ~0u;
 
-    // Where the indices of 64 triangles are. Narrow ones count from firstVertex. kWideIndices: whole, low half first.
+    // Location of the indices of 64 triangles. Narrow ones are relative to firstVertex. kWideIndices: absolute, low
+    // half first.
     struct Page {
         uint32_t firstVertex;
         uint32_t offset;  // in `indices`
@@ -90,8 +91,8 @@ struct MeshTree {
     std::vector<MeshNode> nodes;    // the root first
     std::vector<Page> pages;
     std::vector<uint16_t> indices;
-    std::vector<uint8_t> materials;  // a byte a triangle; none: all 0
-    std::vector<uint32_t> sources;   // the input's number of each triangle, or none
+    std::vector<uint8_t> materials;  // one byte per triangle; empty: all 0
+    std::vector<uint32_t> sources;   // the input's number of each triangle, or empty
     uint32_t triangleCount = 0;
 
     uint32_t VertexCount() const { return static_cast<uint32_t>(vertices.size()) - 1; }
@@ -119,13 +120,13 @@ struct MeshTree {
     template <class Leaf>
     void SearchBox(const Bounds& box, Leaf&& leaf) const;
 
-    // Calls leaf(node, child), which returns the largest fraction that is still of interest, for the leaves that a ray
-    // hits, roughly in the order of their distance; negative ends the search.
+    // Calls leaf(node, child) for the leaves that a ray hits, roughly in order of distance; it returns the largest
+    // fraction that is still wanted, negative to stop.
     template <class Leaf>
     void SearchRay(const MeshTreeRay& ray, float maxFraction, Leaf&& leaf) const;
 };
 
-// Writes the tree's pages, indices and triangleCount for these corners, three a triangle. At most 2^27 triangles.
+// Writes the tree's pages, indices and triangleCount for these corners, three per triangle. At most 2^27 triangles.
 void PackIndices(MeshTree& tree, std::span<const uint32_t> corners);
 
 // The children of a node that overlap a box. Compared in the node's own grid; the slack covers the rounding of the

@@ -15,30 +15,29 @@ struct ChildId {
     friend auto operator<=>(const ChildId&, const ChildId&) = default;
 };
 
-// Whether an edit recomputes mass, inertia and center of mass, or leaves them as they are until the next edit that
-// does.
+// Whether an edit recomputes mass, inertia and center of mass, or keeps them until the next edit that does.
 enum class MassUpdate : uint8_t { Update, Keep };
 
 class MutableCompound final : public CompoundShape {
 public:
     ~MutableCompound() override;
 
-    // Mass and errors as Compound::Create has them. The children's ids have the indices 0, 1, ... and the generation 0.
-    // When children move, their masses stay the same (density times volume, in a unit fixed at creation). OuterRadius
-    // is that of the box around the children: up to 1.7 times as much as needed. The center frame moves with the center
-    // of mass.
+    // Mass and errors as for Compound::Create. The children's ids have the indices 0, 1, ... and the generation 0. When
+    // children move, their masses stay the same (density times volume, in a unit fixed at creation). OuterRadius is
+    // that of the box around the children: up to 1.7 times as much as needed. The center frame moves with the center of
+    // mass.
     static Result<std::shared_ptr<MutableCompound>> Create(std::span<const ChildSettings> children);
-    // With the same ids.
+    // A copy with the same ids.
     std::shared_ptr<MutableCompound> Copy() const;
 
     uint32_t Count() const { return count_; }  // of children; indices may be larger
     bool Exists(ChildId id) const;
-    // The child that has the index now; not valid if there is none.
+    // The id of the child with this index; invalid if there is none.
     ChildId IdOf(uint32_t index) const;
     // The sum of density times volume over the children, as of the last update of the mass.
     double RelativeMass() const { return relativeMass_; }
 
-    // Errors, after which nothing has changed: those of Create about `child`, UnknownId, Degenerate (the last child
+    // Errors, which leave the compound unchanged: those of Create about `child`, UnknownId, Degenerate (the last child
     // cannot be removed).
     Result<ChildId> Add(const ChildSettings& child, MassUpdate mass = MassUpdate::Update);
     Status Set(ChildId id, const ChildSettings& child, MassUpdate mass = MassUpdate::Update);  // all of it
@@ -50,7 +49,7 @@ public:
     // edit.
     struct Edit {
         uint32_t index;
-        Child child;             // its shape is null: to be removed
+        Child child;             // null shape: to be removed
         CompoundSum sum, total;  // of the child, and of all with it
         MassProperties mass;     // after the edit
         double relativeMass;     // after the edit

@@ -1,4 +1,4 @@
-// A parallel-for callback, through which slow builds of shapes use threads without depending on a job system.
+// A parallel-for callback that lets slow builds of shapes use threads without depending on a job system.
 #pragma once
 
 #include <Fulcrum/Math/Function.h>

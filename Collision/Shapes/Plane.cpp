@@ -18,10 +18,11 @@ Result<std::shared_ptr<const Plane>> Plane::Create(const Vector3& normal, float 
                      Message("the offset is %g m: at most %g m", double{offset}, double{kUnboundedExtent})};
     }
     const std::shared_ptr<Plane> plane(new Plane);
-    // A normal that is a unit vector to within rounding is not changed.
+    // A normal of unit length within rounding is not changed.
     plane->normal_ = std::fabs(length - 1) < 0x1p-23 ? normal : Vector3((exact / length).cast<float>());
     plane->offset_ = offset;
-    // Infinite also along an axis where it ends: in center and extent of such a box that end would be lost to rounding.
+    // Infinite also along an axis where the half space ends: the center and extent of such a box would lose that end to
+    // rounding.
     plane->bounds_.lower = Vector3::Constant(-kUnboundedExtent);
     plane->bounds_.upper = Vector3::Constant(kUnboundedExtent);
     plane->outerRadius_ = kUnboundedExtent;

@@ -10,9 +10,9 @@ inline constexpr float kUnboundedExtent = 1e18f;  // m
 
 class Plane final : public Shape {
 public:
-    // All x with normal . x <= offset. `normal` is a direction of any length but zero and points out of the solid;
-    // offset in m. Bodies beyond kUnboundedExtent are not found. Errors: NonFinite, Degenerate (no direction),
-    // OutOfRange (the offset).
+    // All x with normal . x <= offset. `normal` points out of the solid and may have any length except zero; offset in
+    // m. Bodies beyond kUnboundedExtent are not found. Errors: NonFinite, Degenerate (no direction), OutOfRange (the
+    // offset).
     static Result<std::shared_ptr<const Plane>> Create(const Vector3& normal = Vector3(0, 1, 0), float offset = 0);
     const Vector3& Normal() const { return normal_; }  // unit
     float Offset() const { return offset_; }

@@ -56,12 +56,16 @@ Result<std::shared_ptr<const Box>> Box::Create(const Vector3& halfExtents, float
 
     const std::shared_ptr<Box> box(new Box);
     box->mass_ = mass.Value();
-    box->convexRadius_ = convexRadius;
-    box->halfExtents_ = halfExtents;
-    box->bounds_ = SymmetricBounds(halfExtents);
-    box->innerRadius_ = smallest;
-    box->outerRadius_ = Length(halfExtents - Vector3::Constant(convexRadius)) + convexRadius;
+    box->SetSize(halfExtents, convexRadius);
     return std::shared_ptr<const Box>(box);
+}
+
+void Box::SetSize(const Vector3& halfExtents, float convexRadius) {
+    convexRadius_ = convexRadius;
+    halfExtents_ = halfExtents;
+    bounds_ = SymmetricBounds(halfExtents);
+    innerRadius_ = halfExtents.minCoeff();
+    outerRadius_ = Length(halfExtents - Vector3::Constant(convexRadius)) + convexRadius;
 }
 
 Vector3 Box::SupportCore(const Vector3& direction) const {

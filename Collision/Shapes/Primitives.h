@@ -29,7 +29,9 @@ public:
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:
+    friend class BoxPart;  // NarrowPhase/BoxPart.h
     Box() : ConvexShape(ShapeType::Box) {}
+    void SetSize(const Vector3& halfExtents, float convexRadius);
     Vector3 halfExtents_ = Vector3::Zero();
 };
 

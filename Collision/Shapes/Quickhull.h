@@ -1,6 +1,6 @@
 // Triangulated convex hull of points. Called by HullBuilder, which merges the triangles into polygons. Serial, pure.
 // Points are rounded to a grid of 2^40 steps per half extent, where every orientation test is exact in integers of 128
-// bits. So the mesh is a closed, convex sphere at every step whatever the input, and no case needs a repair.
+// bits. So the mesh is closed and convex at every step for any input, without special cases.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -12,8 +12,8 @@
 
 namespace fulcrum {
 
-// Positive where d lies on the side of the plane (a, b, c) from which a, b, c run counter-clockwise, 0 in the plane,
-// else negative. Exact. Coordinates: integers of at most 2^40.
+// Positive if d is on the side of the plane (a, b, c) from which a, b, c are counter-clockwise, 0 in the plane, else
+// negative. Exact. Coordinates: integers of at most 2^40.
 int ExactOrientation(const Position& a, const Position& b, const Position& c, const Position& d);
 
 // Normal (b - a) x (c - a), each component correctly rounded. Coordinates as above.
@@ -30,7 +30,7 @@ struct TriangleHull {
     std::vector<int> vertices;         // points, in the order in which the hull grew
     std::vector<Triangle> triangles;
     double gridStep = 0;   // m
-    double tolerance = 0;  // m; where the vertices were not limited, no point is farther outside any triangle
+    double tolerance = 0;  // m; if the number of vertices was not limited, no point is farther outside any triangle
     double thickness = 0;  // m, of the first tetrahedron: about the points' smallest extent
 };
 
@@ -42,7 +42,7 @@ struct QuickhullSettings {
 
 // Grows a tetrahedron by the point that lies farthest outside until none is outside by more than the tolerance,
 // 3 inputRounding (|x| + |y| + |z|) with the largest coordinates, but at most a thousandth of the thickness.
-// Points: finite. Error: Degenerate (the message says which way).
+// Points: finite. Error: Degenerate (the message says why).
 // Source: Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", 1996; without its merging.
 Result<TriangleHull> Quickhull(std::span<const Position> points, const QuickhullSettings& settings = {});
 

@@ -91,8 +91,8 @@ inline bool IntersectTriangle(const ShearedRay& ray, const Vector3& a, const Vec
     return fraction >= 0 && fraction <= maxFraction;
 }
 
-// The same for eight triangles at once: the lanes that are hit, their fractions and which are hit from behind. The same
-// bits.
+// The same for eight triangles at once, bit-identical: the lanes that are hit, their fractions and which are hit from
+// behind.
 struct TriangleHits {
     uint32_t bits, backFaces;
     alignas(32) float fraction[8];
@@ -135,7 +135,7 @@ inline bool IsUsable(const Vector3& origin, const Vector3& displacement) {
            along.z() <= kFar && Max(along.x(), Max(along.y(), along.z())) >= kShort;
 }
 
-// 1 / displacement for slab tests; components of less than 1e-18 m count as that, so that fractions stay finite.
+// 1 / displacement for slab tests; components below 1e-18 m are clamped to it, so that fractions stay finite.
 inline Vector3 BoundedInverse(const Vector3& displacement) {
     Vector3 inverse;
     for (int axis = 0; axis < 3; ++axis)

@@ -6,9 +6,9 @@
 
 namespace fulcrum {
 
-// Hull of two balls on y: of `topRadius` about (0, halfHeight, 0) and `bottomRadius` about (0, -halfHeight, 0), meters,
-// all > 0. Errors: NonFinite, NonPositive, Degenerate (one ball inside the other: that is a Sphere of the larger
-// radius), OutOfRange.
+// Convex hull of two balls on the y axis: of `topRadius` about (0, halfHeight, 0) and `bottomRadius` about (0,
+// -halfHeight, 0), meters, all > 0. Errors: NonFinite, NonPositive, Degenerate (one ball inside the other: use a Sphere
+// of the larger radius), OutOfRange.
 class TaperedCapsule final : public ConvexShape {
 public:
     static Result<std::shared_ptr<const TaperedCapsule>> Create(float halfHeight, float topRadius, float bottomRadius);

@@ -1,7 +1,7 @@
-// The base of all shapes. A shape is immutable once created and shared by any number of bodies and threads; a
-// MutableCompound, which is edited, belongs to one body.
-// Its geometry is expressed in the center frame: axes of the frame that the user described it in, origin at the center
-// of mass of its volume. So a body's internal pose is that of its center of mass, and no kernel adds an offset.
+// The base of all shapes. A shape is immutable once created and may be shared by any number of bodies and threads; only
+// a MutableCompound can be edited, and belongs to one body. Geometry is expressed in the center frame: axes of the
+// frame in which the user described it, origin at the center of mass of its volume. So a body's internal pose is that
+// of its center of mass, and no kernel adds an offset.
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>
@@ -22,7 +22,7 @@ enum class ShapeType : uint8_t {
     Triangle,
     TaperedCapsule,
     Cylinder,  // tapered ones and cones, too
-    Custom,    // what users derive from CustomConvex
+    Custom,    // classes that users derive from CustomConvex
     Compound,
     MutableCompound,
     TriangleMesh,
@@ -33,7 +33,8 @@ enum class ShapeType : uint8_t {
 inline constexpr int kConvexShapeTypes = static_cast<int>(ShapeType::Compound);  // those before it
 const char* ShapeTypeName(ShapeType type);
 
-// Of a solid of density 1 kg/m3, about its center of mass. All zero for shapes with no volume or an infinite one.
+// Mass properties of a solid of density 1 kg/m3, about its center of mass. All zero for shapes with no volume or an
+// infinite one.
 struct MassProperties {
     float volume = 0;                            // m3
     Vector3 centerOfMass = Vector3::Zero();      // m, in the user's frame
@@ -41,14 +42,14 @@ struct MassProperties {
     Quaternion principalAxes;                    // rotation from the principal frame to the shape's frame
 };
 
-// What ContentHash (ShapeHash.h) has found; 0: nothing yet. A copy, which may be changed, starts without.
+// Cached result of ContentHash (ShapeHash.h); 0: none yet. Copies start without, because they may be changed.
 class CachedHash {
 public:
     CachedHash() = default;
     CachedHash(const CachedHash&) {}
     CachedHash& operator=(const CachedHash&) { return *this; }
     uint64_t Get() const { return __atomic_load_n(&hash_, __ATOMIC_RELAXED); }
-    // Threads that find it at the same time find the same.
+    // Threads that compute it concurrently get the same value.
     void Set(uint64_t hash) const { __atomic_store_n(&hash_, hash, __ATOMIC_RELAXED); }
 
 private:
@@ -69,7 +70,7 @@ public:
     // In the center frame.
     const Bounds& LocalBounds() const { return bounds_; }
     // Radius of the largest sphere about the center of mass that fits inside. Continuous collision is for motions
-    // longer than this.
+    // longer than this per step.
     float InnerRadius() const { return innerRadius_; }
     // Distance of the farthest point from the center of mass.
     float OuterRadius() const { return outerRadius_; }
@@ -101,8 +102,8 @@ public:
     Vector3 Support(const Vector3& direction) const {
         return SupportCore(direction) + Normalized(direction) * convexRadius_;
     }
-    // The flat face, straight edge or point of the core that faces the unit vector `direction` most nearly: what
-    // contacts are clipped from (SupportingFace.h). The default probes the support function around the direction.
+    // The flat face, straight edge or point of the core whose normal is closest to the unit vector `direction`;
+    // contacts are clipped from it (SupportingFace.h). The default probes the support function around the direction.
     virtual void FindSupportingFace(const Vector3& direction, SupportingFace& face) const;
 
 protected:

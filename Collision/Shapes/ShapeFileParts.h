@@ -19,15 +19,15 @@ using ShapeResult = Result<ShapePtr>;
 
 inline bool IsUnit(double lengthSquared) { return std::fabs(lengthSquared - 1) < 1e-5; }
 
-// Where in a file a shape is read or written.
+// Context of a shape being read or written.
 struct ShapeFileScope {
     std::span<const CustomShapeFormat> custom;
     int depth = 0;  // of nesting
 };
 
-// Access to private data of shapes that are saved as they are, so that they are read back with the same bits.
+// Access to private data of shapes, which are saved bit-exactly.
 struct ShapeFileAccess {
-    // The hull of these faces, or an error where they are no closed convex polyhedron around the origin.
+    // The hull of these faces, or an error if they are not a closed convex polyhedron around the origin.
     static ShapeResult MakeHull(const HullMesh& mesh, const MassProperties& mass, float convexRadius);
     static ShapeResult MakeCompound(std::vector<Compound::Child> children, const MassProperties& mass);
     static void WriteMutableCompound(const MutableCompound& compound, ByteWriter& out, const ShapeFileScope& scope);
@@ -51,7 +51,8 @@ ShapeResult ReadCompound(ByteReader& in, const ShapeFileScope& scope);
 
 void WriteMass(const MassProperties& mass, ByteWriter& out);
 MassProperties ReadMass(ByteReader& in);
-// Whether a solid can have these: positive, and no moment of inertia above the sum of the others.
+// Whether these mass properties are physically possible: positive, and no moment of inertia above the sum of the
+// others.
 bool IsPlausible(const MassProperties& mass);
 
 void WriteMaterials(std::span<const SurfaceMaterial> materials, ByteWriter& out);

@@ -38,8 +38,8 @@ MeshNode ReadNode(ByteReader& in) {
     return node;
 }
 
-// Whether a tree is as the builder writes it: every node and triangle reached once and in order, every box around its
-// triangles. Then no search can leave the arrays or miss a triangle.
+// Validates a tree: every node and triangle is reached once and in order, and every box contains its triangles. Then no
+// search can leave the arrays or miss a triangle.
 class TreeCheck {
 public:
     explicit TreeCheck(const MeshTree& tree) : tree_(tree) {}

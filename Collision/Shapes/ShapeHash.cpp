@@ -40,7 +40,7 @@ uint64_t HashCustom(const ConvexShape& shape) {
     return hash;
 }
 
-// Of what has custom children, which cannot be saved.
+// For compounds with custom children, which cannot be saved.
 uint64_t HashCompound(const CompoundShape& shape) {
     uint64_t hash = HashCommon(shape);
     for (const CompoundShape::Child& child : shape.Children()) {

@@ -1,4 +1,4 @@
-// Checks of the sizes that users give. Used by the Create functions of the shapes.
+// Checks of the sizes given by users. Used by the Create functions of the shapes.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Message.h>

@@ -8,8 +8,8 @@ namespace fulcrum {
 
 namespace {
 
-// By how much the probe directions lean away from the direction, rad: faces that are turned by less are found. A curved
-// surface of radius R looks flat to the probes over 0.02 R, so edges shorter than a tenth of the core count as points.
+// Tilt of the probe directions relative to the direction, rad: faces tilted by less are found. A curved surface of
+// radius R looks flat to the probes over 0.02 R, so edges shorter than a tenth of the core count as points.
 constexpr float kLean = 0.02f;
 
 // Sines of the multiples of 22.5 degrees.
@@ -17,7 +17,7 @@ constexpr float kSines[16] = {0.0f,         0.382683432f,  0.707106781f,  0.9238
                               0.707106781f, 0.382683432f,  -0.0f,         -0.382683432f, -0.707106781f, -0.923879533f,
                               -1.0f,        -0.923879533f, -0.707106781f, -0.382683432f};
 
-// A vertex is the same point in the core's frame in every step.
+// Names a vertex by its coordinates, which are the same in every step.
 int NameOf(const Vector3& v) {
     uint32_t hash = 0;
     for (int i = 0; i < 3; ++i) {

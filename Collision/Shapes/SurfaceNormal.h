@@ -7,8 +7,8 @@
 
 namespace fulcrum {
 
-// Unit, to the side from which abc run counter-clockwise; along y for a triangle without area. In double where float
-// would lose more than a ten-thousandth, for slivers, or leave its range.
+// Unit, to the side from which abc run counter-clockwise; along y for a triangle without area. In double if float would
+// lose more than a ten-thousandth (slivers) or overflow.
 inline Vector3 TriangleNormal(const Vector3& a, const Vector3& b, const Vector3& c) {
     const Vector3 u = b - a, v = c - a;
     const Vector3 cross = Cross<float>(u, v);

@@ -1,6 +1,6 @@
 // The base of TriangleMesh and HeightField: triangle queries for contacts, ray casts and shape casts, all in the
 // shape's own frame, which is the user's. Const functions may run on any number of threads at once and allocate
-// nothing. The order in which triangles are found depends on the shape's data alone.
+// nothing. The order in which triangles are found depends only on the shape's data.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
@@ -27,7 +27,7 @@ struct TriangleView {
     // open boundaries, for edges of more than two triangles and for convex edges above the shape's angle; on two-sided
     // shapes for concave ones too.
     uint8_t activeEdges;
-    uint8_t material;  // index into Materials(), where that is not empty
+    uint8_t material;  // index into Materials(), unless that is empty
 };
 
 // From `origin` to origin + displacement.
@@ -42,7 +42,7 @@ inline constexpr uint32_t kNoTriangle = ~0u;
 struct SurfaceHit {
     float fraction = 1;  // of the displacement, 0 .. 1
     uint32_t triangle = kNoTriangle;
-    Vector3 normal = Vector3::Zero();  // unit; the face's, turned against the ray where that came from behind
+    Vector3 normal = Vector3::Zero();  // unit; the face's, reversed if hit from behind
     bool isBackFace = false;
 };
 
@@ -50,41 +50,42 @@ class SurfaceShape : public Shape {
 public:
     ~SurfaceShape() override;
 
-    // Ids are below this. A mesh has a triangle for each; a height field none for those of holes.
+    // Ids are below this. A mesh has a triangle for each id; a height field has none for holes.
     virtual uint32_t TriangleIdEnd() const = 0;
     virtual uint32_t TriangleCount() const = 0;
     // `id`: from VisitTriangles, FindTriangles or a cast.
     virtual TriangleView GetTriangle(uint32_t id) const = 0;
-    // A triangle of each id, into views of the same length.
+    // Writes the triangle of each id to `views`, of the same length.
     virtual void GetTriangles(std::span<const uint32_t> ids, TriangleView* views) const = 0;
 
     // Calls visit(uint32_t id) for every triangle whose bounding box overlaps `box`: touching counts. The triangle
     // itself may be outside `box`. Bounds may be infinite; empty or NaN ones find nothing.
     template <class Visitor>
     void VisitTriangles(const Bounds& box, Visitor&& visit) const;
-    // The same into `ids`. Returns how many there are, which may be more than fit: the first ids.size() are written.
+    // Writes the ids to `ids`. Returns their number, which may be larger than ids.size(): then only the first ones are
+    // written.
     uint32_t FindTriangles(const Bounds& box, std::span<uint32_t> ids) const;
 
-    // The closest hit with a fraction of at most `maxFraction`; of hits equally close, the lowest id. A ray never slips
-    // between two triangles that share an edge or a vertex. False: none, `hit` is unchanged. Rays that are not finite,
-    // or of more than 1e18 m, hit nothing.
+    // The closest hit with a fraction of at most `maxFraction`; ties are resolved by the lowest id. A ray never passes
+    // between two triangles that share an edge or a vertex. Returns false, leaving `hit` unchanged, if there is none.
+    // Rays that are not finite, or of more than 1e18 m, hit nothing.
     virtual bool CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction = 1) const = 0;
-    // The same for up to kMostRays rays, which costs less where they lie close together: hits[i] for rays[i] up to
-    // maxFractions[i]. Returns the bits of those that hit.
+    // The same for up to kMostRays rays, cheaper if they are close together: hits[i] for rays[i] up to maxFractions[i].
+    // Returns the bits of those that hit.
     static constexpr int kMostRays = 32;
     virtual uint32_t CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const;
     // Whether there is any.
     virtual bool IsHit(const SurfaceRay& ray, float maxFraction = 1) const = 0;
-    // Calls visit(const SurfaceHit&) for every hit with a fraction of at most `maxFraction`, in no order of fractions,
+    // Calls visit(const SurfaceHit&) for every hit with a fraction of at most `maxFraction`, in no particular order,
     // until it returns false. A ray through a shared edge may hit both triangles.
     template <class Visitor>
     void CastRayAll(const SurfaceRay& ray, Visitor&& visit, float maxFraction = 1) const;
 
-    // Two-sided triangles collide and are hit from both sides; one-sided ones from the front alone.
+    // Two-sided triangles collide and are hit from both sides; one-sided ones only from the front.
     bool IsTwoSided() const { return isTwoSided_; }
     // The palette; empty if the body's material is used everywhere.
     std::span<const SurfaceMaterial> Materials() const;
-    // In bytes; data shared by instances count in each.
+    // In bytes; data shared by instances are counted in each.
     virtual size_t MemoryUsed() const = 0;
 
 protected:

@@ -6,8 +6,8 @@
 
 namespace fulcrum {
 
-// Corners in meters. `radius` >= 0 makes it a rounded plate; 0, the default, leaves it without thickness: both sides
-// collide, and nothing is inside. The mass properties are those of a flat plate of thickness 2 radius, or of 1 mm if
+// Corners in meters. `radius` > 0 makes it a rounded plate; with 0, the default, it has no thickness: both sides
+// collide, and there is no inside. The mass properties are those of a flat plate of thickness 2 radius, or of 1 mm if
 // the radius is 0: bodies of such triangles should be static or be given a mass. Errors: NonFinite, Negative,
 // Degenerate (corners on a line), OutOfRange.
 class Triangle final : public ConvexShape {
@@ -19,16 +19,16 @@ public:
     Triangle(const Vector3 (&corners)[3], const Vector3& normal)
         : ConvexShape(ShapeType::Triangle), corners_{corners[0], corners[1], corners[2]}, normal_(normal) {}
 
-    // Corner 0, 1 or 2, about the triangle's centroid.
+    // Corner 0, 1 or 2, relative to the triangle's centroid.
     const Vector3& Corner(int i) const { return corners_[i]; }
-    // Unit; the side from which the corners run counter-clockwise.
+    // Unit; points to the side from which the corners are counter-clockwise.
     const Vector3& Normal() const { return normal_; }
     Vector3 SupportCore(const Vector3& direction) const override;
     void FindSupportingFace(const Vector3& direction, SupportingFace& face) const override;
 
 private:
     friend struct ShapeFileAccess;
-    void Complete(float radius);  // what follows from corners and radius
+    void Complete(float radius);  // computes the data derived from corners and radius
 
     Triangle() : ConvexShape(ShapeType::Triangle) {}
     Vector3 corners_[3];

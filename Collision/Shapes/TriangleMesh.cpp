@@ -92,7 +92,7 @@ Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Scaled(const TriangleM
     return std::shared_ptr<const TriangleMesh>(instance);
 }
 
-// Sets what derives from tree, scale and settings.
+// Computes the data derived from tree, scale and settings.
 void TriangleMesh::Finish(MeshReport* report) {
     MeshEdges edges = FindActiveEdges(*tree_, scale_, activeEdgeCosine_, isTwoSided_);
     activeEdges_ = std::move(edges.active);

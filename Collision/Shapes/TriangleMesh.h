@@ -1,4 +1,4 @@
-// Triangle mesh: indexed triangles in a tree of eight-way nodes with boxes of 8 bits a coordinate (MeshTree.h). For
+// Triangle mesh: indexed triangles in a tree of eight-way nodes with boxes of 8 bits per coordinate (MeshTree.h). For
 // static and kinematic bodies: it has no volume. Immutable; instances of other scales share the data.
 #pragma once
 
@@ -13,28 +13,28 @@ struct MeshTree;
 
 struct TriangleMeshSettings {
     std::span<const Vector3> vertices{};           // m
-    std::span<const uint32_t> indices{};           // three a triangle, counter-clockwise seen from the front
-    std::span<const uint8_t> triangleMaterials{};  // one a triangle, or none: all 0
+    std::span<const uint32_t> indices{};           // three per triangle, counter-clockwise seen from the front
+    std::span<const uint8_t> triangleMaterials{};  // one per triangle, or empty: all 0
     std::span<const SurfaceMaterial> materials{};  // the palette, at most 255; none: the body's own material everywhere
     bool isTwoSided = false;
     float activeEdgeCosine = 0.996f;   // -1 .. 1: edges whose normals have a larger cosine (5 degrees) count as flat
-    float weldDistance = 1e-7f;        // m, >= 0: vertices this close become one
-    bool keepSourceTriangles = false;  // SourceTriangle(), for 4 bytes a triangle
+    float weldDistance = 1e-7f;        // m, >= 0: vertices this close are merged
+    bool keepSourceTriangles = false;  // enables SourceTriangle(), 4 bytes per triangle
 };
 
 class TriangleMesh final : public SurfaceShape {
 public:
     ~TriangleMesh() override;
 
-    // Vertices nearly equal are welded, triangles without area and duplicates dropped; `report` (may be null) says what
-    // was repaired. The result has the same bits for any `parallel`. Errors: NonFinite (names the vertex), OutOfRange
-    // (an index, a material, a setting; more than 2^27 triangles), Degenerate (nothing left, or a number of indices
-    // that three does not divide).
+    // Vertices nearly equal are welded, triangles without area and duplicates dropped; `report` (may be null) returns
+    // what was repaired. The result is bit-identical for any `parallel`. Errors: NonFinite (names the vertex),
+    // OutOfRange (an index, a material, a setting; more than 2^27 triangles), Degenerate (nothing left, or a number of
+    // indices that is no multiple of three).
     static Result<std::shared_ptr<const TriangleMesh>> Create(const TriangleMeshSettings& settings,
                                                               MeshReport* report = nullptr,
                                                               const ParallelLoop& parallel = {});
-    // The same mesh with its coordinates multiplied by `scale`, which may be non-uniform and mirror: fronts stay
-    // fronts. Shares tree, vertices and materials with `mesh`; triangles keep their ids. Errors: NonFinite, OutOfRange
+    // The same mesh with its coordinates multiplied by `scale`, which may be non-uniform and mirror; front sides are
+    // kept. Shares tree, vertices and materials with `mesh`; triangles keep their ids. Errors: NonFinite, OutOfRange
     // (the magnitude of a factor, multiplied by earlier scales, not 1e-6 to 1e6; a coordinate above 1e15 m).
     static Result<std::shared_ptr<const TriangleMesh>> Scaled(const TriangleMesh& mesh, const Vector3& scale);
 
@@ -51,7 +51,7 @@ public:
     Vector3 Vertex(uint32_t id) const;
     const Vector3& Scale() const { return scale_; }
     float ActiveEdgeCosine() const { return activeEdgeCosine_; }
-    // The number that triangle `id` had in the settings' indices; only where the settings asked to keep it.
+    // The number of triangle `id` in the settings' indices; only if keepSourceTriangles was set.
     bool HasSourceTriangles() const;
     uint32_t SourceTriangle(uint32_t id) const;
 
@@ -70,7 +70,7 @@ private:
     void Finish(MeshReport* report);
 
     std::shared_ptr<const MeshTree> tree_;
-    std::vector<uint8_t> activeEdges_;  // a byte a triangle, of the scaled mesh
+    std::vector<uint8_t> activeEdges_;  // one byte per triangle, of the scaled mesh
     Vector3 scale_ = Vector3::Ones();
     float activeEdgeCosine_ = 1;
     float treeExtent_ = 0;  // m: the largest coordinate, unscaled

@@ -63,14 +63,14 @@ void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction fou
 // Rays in the unscaled coordinates of the tree.
 inline Vector3 TriangleMesh::InTree(const Vector3& v) const { return isScaled_ ? Vector3(v.cwiseQuotient(scale_)) : v; }
 
-// By how much boxes are enlarged for rays from origins of this size, in the tree's coordinates.
+// Enlargement of boxes for rays from origins of this size, in the tree's coordinates.
 inline float TriangleMesh::PadFor(float largestOrigin) const {
-    // Where one axis is stretched, the rounding of the test along it counts for more along the others.
+    // If one axis is stretched, rounding errors along it are larger relative to the others.
     const Vector3 size = scale_.cwiseAbs();
     return 0x1p-20f * (isScaled_ ? size.maxCoeff() / size.minCoeff() : 1.0f) * (treeExtent_ + largestOrigin);
 }
 
-// Of up to eight triangles by lanes; lanes beyond repeat the first.
+// Loads up to eight triangles into lanes; remaining lanes repeat the first.
 inline void TriangleMesh::LoadCorners(uint32_t begin, uint32_t end, Vec3<Wide<8>> (&corners)[3]) const {
     const MeshTree& tree = *tree_;
     const float* rows[3][8];

@@ -1,18 +1,20 @@
-// Impacts of contacts with restitution, in every pass over velocities, before the rows are solved: what a body is hit
-// by goes on to what it touches in the same pass, and to what that touches in the next.
+// Impacts of contacts with restitution, applied in every velocity iteration before the rows are solved. Impacts
+// propagate: a body that is hit passes the impact on to the bodies it touches in the same iteration, those pass it on
+// in the next.
 //
-// Newton's law at each point: v+ = -e v-, all points of a contact that are hit together; friction by Coulomb's law with
-// a tangential restitution of 0. No more of these impulses than does no work: with several points, or with friction,
-// Newton's law may add energy (W. J. Stronge, Impact Mechanics, 2000).
+// Newton's law of restitution at each point, v+ = -e v-, for all points of a contact that hit in the substep together;
+// Coulomb friction with a tangential restitution of 0. The impulses are scaled down where they would add energy, which
+// Newton's law may do with several points or with friction (W. J. Stronge, Impact Mechanics, 2000).
 //
-// Speed at the time of impact: v^2 = u^2 + 2 a gap, with u the approach before the substep's gravity and a what presses
-// the bodies together. The speed after it is such that kinetic energy and a times the way are those of e v at the
-// surface: restitution 1 neither gains nor loses energy, wherever in the substep the impact is.
+// Speed at the time of impact: v^2 = u^2 + 2 a gap, with u the approach speed before the substep's gravity and a the
+// closing acceleration. The speed at the end of the substep is that of free flight with initial speed e v from the
+// surface: with restitution 1 energy is neither gained nor lost, wherever in the substep the impact happens.
 //
-// Bodies move by the new velocity for what is left of the substep after the impact: they are displaced by minus the
-// change of velocity times the time before it; in relaxing passes, after the poses moved, by it times the time since.
+// Bodies move with the new velocity only for the rest of the substep after the impact. So they are displaced by minus
+// the velocity change times the time before the impact, or, in relax iterations, which run after the poses moved, by
+// the velocity change times the time since.
 //
-// No warm start repeats impulses of impacts: they are added to the velocities without constraints, too.
+// Impact impulses are never warm started: they are added to the unconstrained velocities, too.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactNote.h>
@@ -23,15 +25,15 @@
 
 namespace fulcrum::contacts {
 
-// The points that are hit within a substep.
+// The contact points that collide within a substep.
 template <class Real>
 struct Hits {
     static constexpr int kPoints = ContactRecord::kMaxPoints;
-    Real speed[kPoints];  // m/s that the point is to leave with; 0: not hit
+    Real speed[kPoints];  // m/s: separation speed that the point must reach; 0: not hit
     Real time;            // s from the beginning of the substep to the first hit
 };
 
-// Separations are those of now, in relaxing passes of the end of the substep.
+// Separations are current: in relax iterations those at the end of the substep.
 template <bool kRelax, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
                                             const NormalMotion<Wide<N>>& free, const NormalMotion<Wide<N>>& velocity) {
@@ -45,14 +47,14 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
         approach[i] = Max(Min(-MotionOf(row, free), -MotionOf(row, velocity)), zero);
-        const Real start = kRelax ? row.separation + approach[i] * h : row.separation;  // as the substep began
+        const Real start = kRelax ? row.separation + approach[i] * h : row.separation;  // at the start of the substep
         gap[i] = Max(start, zero);
         const auto isImpact = ImpactSpeed(batch, approach[i], gap[i], h) > SlowestImpact(batch, settings);
         isHit[i] = isImpact & (batch.restitution > zero) & (start <= approach[i] * h) & (row.inverseResponse > zero);
         const Real time = Min(gap[i] / Max(approach[i], Real(1e-30f)), h);
         hits.time = Select(isHit[i], Min(hits.time, time), hits.time);
     }
-    // All are hit at that time. Flight is exact: a h^2 / 2 comes to the way (Integrate.cpp).
+    // All points are hit at that time. Free flight is integrated exactly, including a h^2 / 2 (Integrate.cpp).
     const Real fall = closing * (h - hits.time), lift = closing * h;
     for (int i = 0; i < batch.pointCount; ++i) {
         const Real after = batch.restitution * ImpactSpeed(batch, approach[i], Min(gap[i], approach[i] * hits.time), h);
@@ -62,14 +64,14 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
     return hits;
 }
 
-// The impulses that make the points which are hit leave with their speeds, and their sums.
+// The impulses that give the points that are hit their separation speeds, and the sums of these impulses.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> FindImpulses(const ContactBatch<N, kFixedB>& batch,
                                                           const NormalMotion<Wide<N>>& motion,
                                                           const Wide<N> (&leaving)[ContactRecord::kMaxPoints],
                                                           Wide<N> (&impulses)[ContactRecord::kMaxPoints]) {
     using Real = Wide<N>;
-    constexpr int kPasses = 8;  // whatever the number of points: lanes of a batch have more or fewer
+    constexpr int kPasses = 8;  // fixed, since the lanes of a batch have different numbers of points
     const Real zero(0.0f);
     Real missing[ContactRecord::kMaxPoints];
     for (int i = 0; i < batch.pointCount; ++i) {
@@ -97,14 +99,16 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     const float dt = 1.0f / settings.inverseDt;
     const float elapsed = kRelax ? settings.elapsed : settings.elapsed - 0.5f * dt;
     const Real zero(0.0f), one(1.0f);
-    // Impacts are of velocities without what constraints did in this substep: a push is none, nor is what a warm start
-    // repeats. In relaxing passes, which have taken the pushes back, of those with it.
+    // Impact speeds are measured on velocities without this substep's constraint impulses: neither penetration recovery
+    // nor a warm start is an impact. Relax iterations, in which recovery velocities are removed, use the solved
+    // velocities.
     Twists<N, kFixedB> free, solved, displacement;
     Gather<BodyRow::Velocity>(batch, states, solved);
     GatherFree(batch, settings, solved, free);
     const Twists<N, kFixedB>& velocity = kRelax ? solved : free;
     Gather<BodyRow::Displacement>(batch, states, displacement);
-    // Of now: impacts of this pass have displaced bodies. Lanes without restitution keep every bit.
+    // Recomputed, because impacts of this iteration have displaced bodies. Lanes without restitution stay
+    // bit-identical.
     const auto findSeparations = [&] {
         const NormalMotion<Real> moved =
             NormalMotionOf(batch, RelativeTwist<BodyRow::Displacement>(batch, displacement, elapsed));
@@ -136,7 +140,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
             tangential[1] = MoveBy(tangential[1], surface.v2);
             tangential[2] = MoveBy(tangential[2], surface.spin);
         }
-    Real left[3];  // what the normal impulses make of it
+    Real left[3];  // after the normal impulses
     for (int k = 0; k < 3; ++k)
         left[k] = tangential[k] + normal.sum * batch.coupling[0][k] + normal.sumB * batch.coupling[1][k] -
                   normal.sumA * batch.coupling[2][k];
@@ -148,8 +152,8 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     ApplyToBoth<N, kFixedB>(batch, changed,
                             batch.normal * normal.sum + batch.tangent1 * friction[0] + batch.tangent2 * friction[1],
                             NormalTorque(batch, normal.sumA, normal.sumB) + batch.normal * friction[2]);
-    // Of a part s of the impulses the work is s rate + s^2 rest, with rest the energy that they would give bodies at
-    // rest; and what they lift in what is left of the substep takes that weight's work.
+    // The work of the impulses scaled by s is s rate + s^2 rest, with rest the energy they would give to bodies at
+    // rest; work against gravity in the rest of the substep is included.
     const auto rateOf = [&](const Twists<N, kFixedB>& twists) {
         const Twist<Real> of = RelativeTwist<BodyRow::Velocity>(batch, twists, settings.elapsed);
         return WorkOf(normal, NormalMotionOf(batch, of)) + friction[0] * Dot<Real>(of.linear, batch.tangent1) +
@@ -172,7 +176,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     }
     const Real shift = kRelax ? Real(dt) - hits.time : -hits.time;
     const auto apply = [&](const Real(&before)[8], const Real(&after)[8], Real(&own)[8], Real(&v)[8], Real(&x)[8]) {
-        // Bodies that an impact would rotate by more than half a turn within the substep are not displaced.
+        // Bodies that an impact would rotate by more than half a revolution within the substep are not displaced.
         Real turnSquared = zero;
         for (int k = BodyState::kAngular; k < BodyState::kAngular + 3; ++k) {
             const Real turn = (after[k] - before[k]) * part * shift;
@@ -181,7 +185,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
         const Real way = Select(turnSquared < Real(10.0f), shift, zero);
         for (int k = 0; k < 6; ++k) {
             const Real difference = (after[k] - before[k]) * part;
-            const auto isOwn = own[k] == v[k];  // what nothing else has changed stays so, to the last bit
+            const auto isOwn = own[k] == v[k];  // unchanged values stay bit-identical
             const Real changedOwn = own[k] + difference;
             v[k] = Select(isHit, Select(isOwn, changedOwn, v[k] + difference), v[k]);
             own[k] = Select(isHit, changedOwn, own[k]);
@@ -199,7 +203,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     Scatter(batch, displacement);
     ScatterFree(batch, settings, free);
     findSeparations();
-    // What bounces is displaced to where its way from the surface would have begun: there is no overlap to push.
+    // A bouncing body is displaced to where its trajectory left the surface, so there is no penetration to recover.
     for (int i = 0; i < batch.pointCount; ++i)
         batch.rows[i].separation =
             Select(hits.speed[i] > zero, Max(batch.rows[i].separation, zero), batch.rows[i].separation);

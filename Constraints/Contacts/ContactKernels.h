@@ -6,7 +6,7 @@
 
 namespace fulcrum::contacts {
 
-// The two bodies' twists in lanes; kept whole so that the spare floats of a row survive the scatter.
+// The two bodies' twists in lanes; whole rows, so that the scatter preserves their spare floats.
 template <int N, bool kFixedB>
 struct Twists {
     using Real = Wide<N>;
@@ -15,7 +15,7 @@ struct Twists {
     Real a[8], b[8];
 };
 
-// Reads the velocities alone.
+// Reads velocities only.
 template <int N, bool kFixedB>
 void GatherVelocities(const ContactBatch<N, kFixedB>& batch, const BodyState* states, Twists<N, kFixedB>& twists) {
     const float* rows[N];
@@ -27,7 +27,7 @@ void GatherVelocities(const ContactBatch<N, kFixedB>& batch, const BodyState* st
     }
 }
 
-// m/s2, of gravity and forces.
+// m/s2, by gravity and forces.
 template <int N>
 Vec3<Wide<N>> GatherAcceleration(const uint32_t (&bodies)[N], const BodyPose* poses) {
     alignas(64) float accelerations[3][N];
@@ -100,7 +100,7 @@ FULCRUM_FORCE_INLINE Twist<Wide<N>> RelativeTwist(const ContactBatch<N, kFixedB>
     return relative;
 }
 
-// Applies the wrench of the impulses: `force` = n sum + t1 f1 + t2 f2 at c, and the torque about c.
+// Applies the wrench of the impulses: `force` = n sum + t1 f1 + t2 f2 at c, and the torque about c (N s, N m s).
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists,
                                       const Vec3<Wide<N>>& force, const Vec3<Wide<N>>& torque) {
@@ -118,7 +118,7 @@ FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&index)[N], const Cont
     GatherRows<N>(rows, out);
 }
 
-// Surface velocity of B relative to A at c, beyond the motion of the bodies.
+// Surface velocity of B relative to A at c, in addition to the motion of the bodies.
 template <class Real>
 struct SurfaceMotion {
     Real v1, v2;  // m/s along t1 and t2
@@ -148,7 +148,7 @@ FULCRUM_FORCE_INLINE Vec3<Wide<N>> NormalTorque(const ContactBatch<N, kFixedB>& 
     return batch.tangent1 * sumB - batch.tangent2 * sumA;
 }
 
-// Sums over the normal rows: of the impulses, and of the impulses times the places a and b.
+// Sums over the normal rows: of the impulses l, and of a l and b l.
 template <class Real>
 struct NormalImpulses {
     Real sum{0.0f}, sumA{0.0f}, sumB{0.0f};
@@ -161,7 +161,7 @@ struct NormalImpulses {
     }
 };
 
-// The motion that the normal rows see: J v of a point is linear + b angular1 - a angular2.
+// The components of the twist that the normal rows depend on: J v of a point is linear + b angular1 - a angular2.
 template <class Real>
 struct NormalMotion {
     Real linear, angular1, angular2;
@@ -179,13 +179,13 @@ FULCRUM_FORCE_INLINE NormalMotion<Wide<N>> NormalMotionOf(const ContactBatch<N, 
             Dot<Real>(relative.angular, batch.tangent2)};
 }
 
-// Work of normal impulses on both bodies, J, for a displacement; for a velocity, power.
+// Work of the normal impulses on both bodies, J, if the motion is a displacement, or power, W, if it is a velocity.
 template <class Real>
 FULCRUM_FORCE_INLINE Real WorkOf(const NormalImpulses<Real>& impulses, const NormalMotion<Real>& motion) {
     return impulses.sum * motion.linear + impulses.sumB * motion.angular1 - impulses.sumA * motion.angular2;
 }
 
-// All impulses of the normal rows.
+// The accumulated impulses of the normal rows.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> TotalOf(const ContactBatch<N, kFixedB>& batch) {
     NormalImpulses<Wide<N>> total;

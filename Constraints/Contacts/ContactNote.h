@@ -1,7 +1,6 @@
-// What contact events say of a contact beyond its record: impulses of the whole step, of which the record has only
-// those of the last substep, and how fast its points closed in. Rows of eight floats, for lanes. Begun by Prepare,
-// added to by Solve; only where contact events are on. Points that a contact does not have have no
-// impulses, but may have any speed.
+// Data of a contact that only contact events need: impulses summed over the step (the record has those of the last
+// substep), and the approach speed of its points. Rows of eight floats, for lanes. Initialized by Prepare, accumulated
+// by Solve; only for contacts with events. Unused points have zero impulse but an undefined speed.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
@@ -11,14 +10,15 @@ namespace fulcrum {
 struct alignas(64) ContactNote {
     static constexpr int kMaxPoints = ContactRecord::kMaxPoints;
 
-    float impulse[kMaxPoints] = {0, 0, 0, 0};        // N s along the normal, by point
-    float frictionImpulse[3] = {0, 0, 0};            // N s, world axes, on B
-    float twistImpulse = 0;                          // N m s about the normal, on B
-    float approachSpeed[kMaxPoints] = {0, 0, 0, 0};  // m/s, >= 0, as two points meet that closed in as the step began
-    float normal[3] = {0, 0, 0};                     // unit, world axes, from A to B: along which it was solved
+    float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
+    float frictionImpulse[3] = {0, 0, 0};      // N s, world axes, on B
+    float twistImpulse = 0;                    // N m s about the normal, on B
+    float approachSpeed[kMaxPoints] = {0, 0, 0,
+                                       0};  // m/s, >= 0, predicted for the time of impact from the start of the step
+    float normal[3] = {0, 0, 0};            // unit, world axes, from A to B: normal used by the solver
     float spare = 0;
 
-    // Places in the two rows.
+    // Indices in the two rows.
     enum Places { kNormalImpulses = 0, kFrictionImpulse = 4, kTwistImpulse = 7, kApproachSpeeds = 0, kNormal = 4 };
 };
 static_assert(sizeof(ContactNote) == 2 * sizeof(float) * kRowFloats);
@@ -28,16 +28,16 @@ FULCRUM_CHECK_PLACE(ContactNote, twistImpulse, 0, ContactNote::kTwistImpulse);
 FULCRUM_CHECK_PLACE(ContactNote, approachSpeed, 1, ContactNote::kApproachSpeeds);
 FULCRUM_CHECK_PLACE(ContactNote, normal, 1, ContactNote::kNormal);
 
-// Fills the notes of a batch's contacts before anything is solved; bodyB[] are the second bodies.
+// Initializes the notes of a batch's contacts before the solve; bodyB[] are the second bodies.
 template <int N, bool kFixedB>
 void BeginNotes(const ContactBatch<N, kFixedB>& batch, const uint32_t (&bodyB)[N], const ConstSolverBodies& bodies,
                 ContactNote* notes);
 
-// Adds what the rows did in a substep that is over.
+// Adds the impulses of the substep just solved.
 template <int N, bool kFixedB>
 void AddRowImpulses(const ContactBatch<N, kFixedB>& batch, ContactNote* notes);
 
-// Adds impulses: of the points, and of friction along the batch's tangents and about its normal.
+// Adds the given impulses: of the points, and of friction along the batch's tangents and about its normal.
 template <int N, bool kFixedB>
 void AddImpulses(const ContactBatch<N, kFixedB>& batch, const Wide<N> (&normal)[ContactNote::kMaxPoints],
                  const Wide<N> (&friction)[3], ContactNote* notes);

@@ -7,7 +7,7 @@ namespace fulcrum {
 
 namespace {
 
-// Grows with the angle of (x, y) about the origin, 0..4; no trigonometry.
+// Pseudo-angle: increases monotonically with the angle of (x, y) about the origin, 0..4; no trigonometry.
 float PseudoAngle(float x, float y) {
     const float sum = std::fabs(x) + std::fabs(y);
     const float t = sum > 0 ? y / sum : 0.0f;

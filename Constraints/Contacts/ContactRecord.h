@@ -1,5 +1,5 @@
-// What the solver needs to know of one contact manifold, and what it keeps from step to step: rows of eight floats, so
-// that Prepare can gather the contacts of a batch into lanes. Written by the Collide stage, impulses by Store.
+// Solver input of one contact manifold, and the impulses kept for warm starting: rows of eight floats, so that Prepare
+// can gather the contacts of a batch into lanes. Written by the Collide stage, impulses by Store.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/RowPlaces.h>
@@ -14,7 +14,8 @@ struct alignas(32) ContactRecord {
     struct Point {
         float onA[3] = {0, 0, 0};  // m, in A's center frame
         float surfaceA = 0;        // see SetSurfaceVelocity
-        float onB[3] = {0, 0, 0};  // m, in B's center frame; the separation is (onB - onA) . normal at the poses of now
+        float onB[3] = {0, 0,
+                        0};  // m, in B's center frame; the separation is (onB - onA) . normal at the current poses
         float surfaceB = 0;
     };
 
@@ -34,7 +35,7 @@ struct alignas(32) ContactRecord {
     const float* Row(int row) const {
         return reinterpret_cast<const float*>(this) + kRowFloats * static_cast<size_t>(row);
     }
-    // Places in the first row, in the second, and in those of points.
+    // Indices in the first row, in the second, and in the points' rows.
     enum Places {
         kNormal = 0,
         kPointCount = 3,
@@ -52,15 +53,17 @@ struct alignas(32) ContactRecord {
     };
 
     // Features that few contacts have, as bits.
-    enum Mark { kSurfaceVelocity = 1, kMassOverride = 2 };
+    enum Mark { kSurfaceVelocity = 1, kMassOverride = 2, kSensed = 4 };
+    // kSensed: the contact is an event, but not solved
     bool Has(Mark mark) const { return (static_cast<int>(marks) & mark) != 0; }
     void Set(Mark mark, bool has) {
         const int others = static_cast<int>(marks) & ~mark;
         marks = static_cast<float>(has ? others | mark : others);
     }
 
-    // Surface velocity of B relative to A beyond the motion of the bodies: m/s at the contact's center and rad/s, world
-    // axes. Few contacts have one, so its six numbers are stored in the spare floats of the first three points' rows.
+    // Surface velocity of B relative to A in addition to the motion of the bodies: m/s at the contact's center and
+    // rad/s, world axes. Few contacts have one, so its six components are stored in the spare floats of the first three
+    // points' rows.
     static constexpr int kSurfacePoints = 3;
     void SetSurfaceVelocity(const Vector3& linear, const Vector3& angular) {
         Set(kSurfaceVelocity, !(linear.isZero(0) && angular.isZero(0)));
@@ -87,9 +90,10 @@ FULCRUM_CHECK_PLACE(ContactRecord::Point, surfaceA, 0, ContactRecord::kSurfaceA)
 FULCRUM_CHECK_PLACE(ContactRecord::Point, onB, 0, ContactRecord::kOnB);
 FULCRUM_CHECK_PLACE(ContactRecord::Point, surfaceB, 0, ContactRecord::kSurfaceB);
 
-// Mean distance of a convex polygon's points from the origin, the origin inside; `x`, `y` are its corners in any order,
-// at most 4. Over the triangle (0, P, Q) it is 2/3 of the mean over the edge PQ, which Simpson's rule gives to 1e-3.
-// Two corners: a segment through the origin. This times mu N is the torque that friction under even pressure can hold.
+// Mean distance from the origin over the area of a convex polygon that contains it; `x`, `y` are its corners in any
+// order, at most 4. Over the triangle (0, P, Q) it is 2/3 of the mean over the edge PQ, which Simpson's rule gives to
+// 1e-3. Two corners: a segment through the origin. This times mu N is the largest friction torque under uniform
+// pressure.
 float MeanDistance(const float* x, const float* y, int count);
 
 }  // namespace fulcrum

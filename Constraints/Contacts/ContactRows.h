@@ -1,15 +1,16 @@
-// The rows of contacts: the kernels that SolveContacts.cpp makes of the usual contacts and SolveRareContacts.cpp of
-// those with restitution or a surface that moves. Two files, as a compiler inlines only so much in one.
+// The row kernels of contacts. SolveContacts.cpp instantiates them for ordinary contacts, SolveRareContacts.cpp for
+// those with restitution or surface velocity. Two files, because compilers limit the amount of inlining per file.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
 
 namespace fulcrum::contacts {
 
-// The friction rows. The impulse that stops the slip, if it is inside the friction cone; else the one on the cone that
-// opposes the slip, by a step of projected gradient with one mass for all directions: since bodies turn, too, the
-// impulse that stops the slip is not parallel to it. Then torsional friction. limit: N s, friction times the sum of the
-// normal impulses. Computes the totals of t1, t2 and twist, and their change from `total`.
+// The friction rows. Sticking: the impulse that stops the slip, if it is inside the friction cone. Sliding: the impulse
+// on the cone that opposes the slip, found by a projected gradient step with one mass for all directions, because
+// bodies also rotate and the impulse that stops the slip is not parallel to it. Then torsional friction. limit: N s,
+// friction times the sum of the normal impulses. Computes the totals of t1, t2 and twist, and their change from
+// `total`.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, const Wide<N> (&total)[3], Wide<N> limit,
                                         Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&solved)[3],
@@ -36,14 +37,14 @@ FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, c
     change[2] = solved[2] - total[2];
 }
 
-// Lanes without a surface velocity keep every bit, a negative zero too.
+// Lanes without a surface velocity stay bit-identical, negative zeros included.
 template <class Real>
 FULCRUM_FORCE_INLINE Real MoveBy(Real velocity, Real surface) {
     return Select(surface == Real(0.0f), velocity, velocity + surface);
 }
 
-// The velocities that bodies would have without what constraints did to them in this substep, impacts apart;
-// those of `solved` where the settings have none.
+// The unconstrained velocities: without the constraint impulses of this substep, but with those of impacts; `solved` if
+// the settings have none.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void GatherFree(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
                                      const Twists<N, kFixedB>& solved, Twists<N, kFixedB>& free) {
@@ -62,8 +63,8 @@ FULCRUM_FORCE_INLINE void ScatterFree(const ContactBatch<N, kFixedB>& batch, con
     if (settings.unconstrained) Scatter(batch, free);
 }
 
-// m/s, of an impact: v^2 = u^2 + 2 a gap, with u the approach before the gravity of a substep of h seconds, and a what
-// presses the bodies together.
+// m/s, impact speed: v^2 = u^2 + 2 a gap, with u the approach speed before the gravity of a substep of h seconds, and a
+// the closing acceleration.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE Wide<N> ImpactSpeed(const ContactBatch<N, kFixedB>& batch, const Wide<N>& approach,
                                          const Wide<N>& gap, const Wide<N>& h) {
@@ -71,8 +72,8 @@ FULCRUM_FORCE_INLINE Wide<N> ImpactSpeed(const ContactBatch<N, kFixedB>& batch, 
     const Real before = Max(approach - batch.closing * h, Real(0.0f));
     return Sqrt(Max(before * before + Real(2.0f) * batch.closing * gap, Real(0.0f)));
 }
-// m/s: slower impacts do not bounce. What gravity presses together comes to rest; what only touches meanwhile sees a
-// few substeps of gravity at most.
+// m/s, restitution threshold: slower impacts do not bounce. At least a few substeps of gravity, so that bodies pressed
+// together by gravity come to rest.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE Wide<N> SlowestImpact(const ContactBatch<N, kFixedB>& batch,
                                            const ContactSolveSettings& settings) {
@@ -81,12 +82,12 @@ FULCRUM_FORCE_INLINE Wide<N> SlowestImpact(const ContactBatch<N, kFixedB>& batch
     return Select(batch.closing > Real(0.0f), slowest, Min(slowest, few * batch.acceleration));
 }
 
-// What a pass over velocities does. With relaxing passes friction is theirs alone: a friction row that sees the speeds
-// of pushes answers them, and as pushes move bodies and friction comes too late for that, layers of boxes creep.
+// What a velocity iteration solves. If relax iterations follow, friction is solved in those only: a friction row would
+// react to the recovery velocity of overlaps, but too late for the positions, and layers of boxes would creep.
 enum class Pass {
-    Push,             // normal rows; overlaps are pushed apart
-    PushAndFriction,  // the same with friction: where no relaxing pass follows, or body B is kinematic
-    Relax             // friction and normal rows; nothing is pushed
+    Push,             // normal rows, with penetration recovery
+    PushAndFriction,  // the same with friction: if no relax iteration follows, or body B is kinematic
+    Relax             // friction and normal rows, without penetration recovery
 };
 
 // The lanes whose body B is kinematic and moves, or has a surface velocity.
@@ -99,9 +100,9 @@ FULCRUM_FORCE_INLINE WideMask<N> MovesByItself(const ContactBatch<N, kFixedB>& b
         return Dot<Real>(velocity.linear, velocity.linear) + Dot<Real>(velocity.angular, velocity.angular) > Real(0.0f);
     }
 }
-// The impulses of the normal rows after one sweep over them, in `total`, where points move at `speed` (m/s along the
-// normal, what they may close in by and what pushes them included; changed to what is left). stiffer: of the rows that
-// overlap, 0..1 less soft.
+// One Gauss-Seidel sweep over the normal rows. total: returns their impulses. speed: m/s along the normal, biases for
+// gaps and recovery included; updated to the remaining error. stiffer: 0..1, reduction of the softness of rows with
+// overlap.
 template <Pass kPass, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SweepNormals(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
                                        const Wide<N>* stiffer, Wide<N>* speed, Wide<N>* total) {
@@ -124,8 +125,8 @@ FULCRUM_FORCE_INLINE void SweepNormals(const ContactBatch<N, kFixedB>& batch, co
     }
 }
 
-// All rows of a batch once, on velocities: friction, then the normal rows. kRare: it may have the surface velocities of
-// a moving second body, or restitution.
+// One velocity iteration over all rows of a batch: friction, then the normal rows. kRare: contacts may have
+// restitution, or a surface velocity on a dynamic second body.
 template <Pass kPass, bool kRare, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                     const ContactSolveSettings& settings) {
@@ -136,12 +137,12 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, twists, settings.elapsed);
     NormalMotion<Real> motion = NormalMotionOf(batch, relative);
 
-    // Points that are apart may close their gap within the substep; those that touch may not approach; those that
-    // overlap are pushed apart, softly.
+    // Separated points may close their gap within the substep (speculative), touching points may not approach,
+    // overlapping points are separated softly.
     Real speed[ContactRecord::kMaxPoints], total[ContactRecord::kMaxPoints];
     [[maybe_unused]] Real stiffer[ContactRecord::kMaxPoints];
-    // What bounces must come with all its speed: rows stop no impact, and in relaxing passes nothing before its gap has
-    // closed.
+    // Bouncing contacts must keep their approach speed until the impact: the rows do not stop it, nor do relax
+    // iterations before the gap has closed.
     [[maybe_unused]] WideMask<N> bounces[ContactRecord::kMaxPoints];
     if constexpr (kRare)
         if (batch.bounces) {
@@ -166,8 +167,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             if constexpr (kRare)
                 if (batch.bounces) speed[i] = Select(bounces[i], Max(speed[i], zero), speed[i]);
             if constexpr (kPass != Pass::Relax) {
-                // What approaches in spite of all is pushed faster by as much: in a pile that is hit hard one pass
-                // stops no body for good.
+                // The remaining approach speed is added to the recovery speed: in a pile that is hit hard, one
+                // iteration does not stop the bodies completely.
                 const Real wanted = (row.separation + Real(settings.slop)) * pushRate;
                 const Real push = Clamp(wanted, fastest + Min(speed[i], zero), zero);
                 speed[i] += push;
@@ -179,9 +180,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     };
     findSpeeds();
     [[maybe_unused]] Real friction[3];
-    // Where relaxing passes follow, only the lanes that move by themselves have friction in a pass that pushes: what
-    // rides on something that moves is moved by friction, and would lag a substep behind on every turn. Others keep
-    // every bit.
+    // If relax iterations follow, only lanes with a moving kinematic body or a surface velocity have friction here: a
+    // load on a turntable or belt would otherwise lag one substep behind. Other lanes stay bit-identical.
     [[maybe_unused]] WideMask<N> rides;
     if constexpr (kPass == Pass::PushAndFriction) rides = settings.relaxes ? MovesByItself(batch) : zero == zero;
     const auto where = [&](const Real& withFriction, [[maybe_unused]] const Real& without) {
@@ -189,8 +189,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         else return withFriction;
     };
     if constexpr (kPass != Pass::Push) {
-        // Friction comes first, non-penetration wins; but its limit is that of the normal impulses which this pass asks
-        // for, not of those of the last one.
+        // Friction comes first, so non-penetration wins; but its limit is computed from the normal impulses of this
+        // iteration, not of the previous one.
         SweepNormals<kPass>(batch, settings, stiffer, speed, total);
         Real sum = zero;
         for (int i = 0; i < batch.pointCount; ++i) sum += total[i];
@@ -242,7 +242,7 @@ FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodySta
     Scatter(batch, twists);
 }
 
-// Of batches that have restitution, or a surface velocity where both bodies move.
+// For batches with restitution, or with a surface velocity between two dynamic bodies.
 template <Pass kPass, int N, bool kFixedB>
 void SolveRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 

@@ -4,7 +4,7 @@ namespace fulcrum {
 
 using namespace contacts;
 
-// Non-linear Gauss-Seidel over the normal rows: with C the separation and slop as the poses are now, a point moves the
+// Non-linear Gauss-Seidel over the normal rows: with C the separation plus slop at the current poses, a point moves the
 // bodies by lambda = -K^-1 baumgarte C along J where C < 0, which changes the C of the points after it.
 template <int N, bool kFixedB>
 void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
@@ -14,7 +14,7 @@ void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, c
     Gather<BodyRow::Displacement>(batch, states, twists);
     const NormalMotion<Real> motion =
         NormalMotionOf(batch, RelativeTwist<BodyRow::Displacement>(batch, twists, settings.elapsed));
-    Real missing[ContactRecord::kMaxPoints];  // m that the pass is to move the point by
+    Real missing[ContactRecord::kMaxPoints];  // m: correction of the point in this iteration
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
         const Real separation = row.startSeparation + MotionOf(row, motion);

@@ -10,7 +10,7 @@ using namespace contacts;
 
 namespace {
 
-// The rows of eight floats that begin with a member of the notes.
+// The rows of eight floats that start at a member of the notes.
 template <int N, bool kFixedB, class Member>
 FULCRUM_FORCE_INLINE void FindRows(const ContactBatch<N, kFixedB>& batch, ContactNote* notes, Member member,
                                    float* (&rows)[N]) {
@@ -24,8 +24,8 @@ FULCRUM_FORCE_INLINE Real FiniteOrZero(const Real& x) {
 
 }  // namespace
 
-// Two points that close in at u and are a gap apart meet at v, v^2 = u^2 + 2 a gap, where a presses the bodies together
-// until then.
+// Approach speed v at the time of impact: v^2 = u^2 + 2 a gap, with u the current approach speed and a the closing
+// acceleration.
 template <int N, bool kFixedB>
 void BeginNotes(const ContactBatch<N, kFixedB>& batch, const uint32_t (&bodyB)[N], const ConstSolverBodies& bodies,
                 ContactNote* notes) {

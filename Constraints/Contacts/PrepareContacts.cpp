@@ -8,12 +8,12 @@ namespace {
 
 using namespace contacts;
 
-// Coefficients above this hold as this one does; a limit of force must be a number.
+// Larger coefficients are clamped to this, which keeps force limits finite.
 constexpr float kMostFriction = 1e6f;
-// Of the smaller inner radius: overlaps that rows give way to as they do to any.
-constexpr float kSoftPart = 0.25f;
+// Fraction of the smaller inner radius up to which overlaps have the full softness.
+constexpr float kSoftFraction = 0.25f;
 
-// Sums, over both bodies, what the response matrices are made of.
+// The terms of the response matrices, summed over both bodies.
 template <class Real>
 struct Responses {
     Real normal[6] = {};    // (n, t1-, t2-)-rows: 00 01 02 11 12 22
@@ -51,8 +51,7 @@ Real InverseOrZero(Real x) {
     return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
 }
 
-// The lanes whose numbers are all finite. Masses, sizes and speeds may each be so extreme that no float holds what they
-// make together.
+// Mask of the lanes whose numbers are all finite. Extreme masses, sizes and speeds may overflow a float when combined.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE WideMask<N> FiniteLanes(const ContactBatch<N, kFixedB>& batch, const Responses<Wide<N>>& responses,
                                              const Wide<N>& diagonals) {
@@ -72,7 +71,7 @@ FULCRUM_FORCE_INLINE WideMask<N> FiniteLanes(const ContactBatch<N, kFixedB>& bat
     return odd == zero;
 }
 
-// Makes the other lanes contacts that do nothing.
+// Makes the other lanes inactive contacts.
 template <int N, bool kFixedB>
 [[gnu::noinline, gnu::cold]] void KeepLanes(ContactBatch<N, kFixedB>& batch, WideMask<N> kept) {
     using Real = Wide<N>;
@@ -125,8 +124,8 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         const Real parting = vn + row.b * w1 - row.a * w2;
-        // Points that separate after a bounce are not warm started: their last impulses would throw the bodies apart
-        // again, and the rows would not take all of that back.
+        // Points that separate after a bounce are not warm started: the impulses of the last step would accelerate the
+        // bodies apart again, and the rows would not remove all of that.
         const auto parts = (restitution > Real(0.0f)) & (parting > Real(settings.restitutionSpeed));
         row.impulse = Select(parts, Real(0.0f), row.impulse);
         left += row.impulse;
@@ -135,7 +134,7 @@ void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const 
     for (Real& impulse : batch.frictionImpulse) impulse = Select(parts, Real(0.0f), impulse);
 }
 
-// Of the marks of records.
+// Mask of lanes whose record has the mark.
 template <int N>
 WideMask<N> HaveSurfaceVelocity(const Wide<N>& marks) {
     using Real = Wide<N>;
@@ -144,7 +143,7 @@ WideMask<N> HaveSurfaceVelocity(const Wide<N>& marks) {
     return (marks == Real(kAlone)) | (marks == Real(kBoth));
 }
 
-// Scales the inverse masses where contacts have an override. Lanes without one keep every bit.
+// Scales the inverse masses of contacts with a mass override. Lanes without one stay bit-identical.
 template <int N, bool kFixedB>
 [[gnu::noinline, gnu::cold]] void OverrideMasses(ContactBatch<N, kFixedB>& batch, const ContactRecord* records,
                                                  const MassOverride* overrides) {
@@ -162,22 +161,22 @@ template <int N, bool kFixedB>
     if constexpr (!kFixedB) ScaleMass(batch.sideB.inverse, Real::Load(scales[2]), Real::Load(scales[3]));
 }
 
-// An angular velocity, rad/s, limited to a radian in dt seconds. Below that every bit stays.
+// An angular velocity, rad/s, limited to a radian in dt seconds; smaller ones stay bit-identical.
 template <class Real>
 Vec3<Real> WithinARadian(const Vec3<Real>& w, float dt) {
     const Real most(1.0f / dt), squared = Dot<Real>(w, w), one(1.0f);
     return w * Select(squared <= most * most, one, most / Sqrt(Max(squared, Real(1e-30f))));
 }
 
-// Adds the surface velocities to those of fixed sides. Lanes without one keep every bit, as they do where no lane of
-// their batch has one.
+// Adds the surface velocities to the velocities of static and kinematic sides. Lanes without one stay bit-identical, so
+// the result does not depend on the other lanes of the batch.
 template <int N>
 void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const ContactRecord* records, float dt) {
     using Real = Wide<N>;
     const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, records);
     const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2,
                      angular = batch.normal * surface.spin;
-    // What the surface turns with it moves along the arc.
+    // Centripetal acceleration of points that rotate with the surface.
     const Vec3<Real> inwards = Cross<Real>(WithinARadian<Real>(angular, dt), linear);
     const auto has = HaveSurfaceVelocity(marks);
     auto& side = batch.sideB;
@@ -218,13 +217,13 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
     batch.maxPushSpeed = Real(settings.maxPushSpeed);
-    batch.inverseSoftDepth = Real(1.0f / kSoftPart) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
+    batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
     batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;
 
-    // Points, halfway between the surfaces, and their center, where friction acts: of those that pressed in the last
-    // step. Points ahead and those of a lifted side have no share in it.
+    // Contact points, halfway between the surfaces, and their center, where friction acts. The center is that of the
+    // points that carried load in the last step: neither speculative points ahead nor those of a lifted side count.
     Vec3<Real> points[ContactRecord::kMaxPoints];
     Vec3<Real> center(zero, zero, zero);
     Real gaps = zero, pressing = zero;
@@ -250,7 +249,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         for (int k = 0; k < 3; ++k) center[k] += Select(used, Real(points[i][k] * share), zero);
         gaps += Select(used, Max(separation, zero), zero);
     }
-    // An impact is where the gap has closed: on both surfaces.
+    // At an impact the gap has closed: the point is on both surfaces.
     const Vec3<Real> toSurface = n * Select(head[Record::kRestitution] > zero, gaps * perPoint * Real(0.5f), zero);
     batch.armA = center - toSurface;
 
@@ -328,7 +327,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
     row[ContactRecord::kTwistImpulse] = batch.frictionImpulse[2];
     if (impulseScale != 1.0f)
         for (Wide<N>& x : row) x = x / Wide<N>(impulseScale);
-    // An impulse that is not finite would be warm started for ever.
+    // An impulse that is not finite would be warm started in every later step.
     for (Wide<N>& x : row) x = Select(Abs(x) <= Wide<N>(std::numeric_limits<float>::max()), x, Wide<N>(0.0f));
     float* rows[N];
     for (int lane = 0; lane < N; ++lane) rows[lane] = records[batch.contact[lane]].impulse;

@@ -10,7 +10,7 @@ void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, cons
     const Real zero(0.0f), inverseDt(settings.inverseDt);
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Velocity>(batch, pseudo, twists);
-    // What is fixed has no pseudo-velocity: it is as displaced as at the start of the step.
+    // Static and kinematic bodies have no pseudo-velocity, and their displacement is that of the start of the step.
     const NormalMotion<Real> motion = NormalMotionOf(batch, RelativeTwist<BodyRow::Displacement>(batch, twists, 0));
     Real speed[ContactRecord::kMaxPoints];
     for (int i = 0; i < batch.pointCount; ++i) {

@@ -20,8 +20,7 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h, 
     pushRate = push.pushRate;
     massScale = push.softness.massScale;
     impulseScale = push.softness.impulseScale;
-    constexpr float kSoftest =
-        0.125f;  // what is always left of the softness: it bounds the load of what can never come apart
+    constexpr float kSoftest = 0.125f;  // least softness: keeps impulses bounded
     mostStiffer = (1 - kSoftest) * impulseScale;
     stiffening = impulseScale / maxPushSpeed;
 }

@@ -13,7 +13,7 @@ AngleRange RangeOf(const AxisControl& control) {
             std::clamp(control.limits.max, -kHalfTurn, kHalfTurn)};
 }
 
-// Which block could hold: locked at zero, and hard.
+// Whether a block part can hold the axis: locked at zero, hard.
 bool HoldsZeroAngle(const AxisControl& control) {
     const AngleRange range = RangeOf(control);
     return control.limited && range.IsLocked() && Abs(range.Center()) < AngleRange::kNegligible &&
@@ -24,21 +24,21 @@ size_t AxisOfLimit(RotationLimit::Slot slot) {
     return slot >= RotationLimit::TwistMaximum ? 0 : slot >= RotationLimit::SwingZMaximum ? 2 : 1;
 }
 uint32_t SlotOfLimit(RotationLimit::Slot slot) {
-    const bool isMaximum = slot % 2 == 0;  // as RotationLimit orders them
+    const bool isMaximum = slot % 2 == 0;  // see the order of RotationLimit::Slot
     return static_cast<uint32_t>(AxisOfLimit(slot)) * ControlSlots::kCount +
            (isMaximum ? ControlSlots::kHighLimit : ControlSlots::kLowLimit);
 }
 
-// What is locked has neither motor nor friction.
+// Locked axes have neither motor nor friction.
 bool IsLocked(const AxisControl& control) { return control.limited && RangeOf(control).IsLocked(); }
 
 bool IsLimited(const AngleRange& range) { return !range.IsLocked() && !range.IsFree(); }
 
-// A swing whose y / w and z / w are within those of a pyramid's faces.
+// The swing clamped so that y / w and z / w are within the pyramid's faces.
 Quaternion WithinPyramid(const Quaternion& swing, const SwingTwistLimits& limits) {
     const auto within = [&](float x, const AngleRange& range) {
         const float ratio = x / std::max(swing.w, 1e-6f);
-        // The tangent of a quarter turn is no number.
+        // The tangent of a quarter turn is infinite.
         constexpr float kNearHalfTurn = AngleRange::kHalfTurn - 1e-3f;
         const SineCosine<float> low = SinCos(0.5f * std::max(range.minimum, -kNearHalfTurn));
         const SineCosine<float> high = SinCos(0.5f * std::min(range.maximum, kNearHalfTurn));
@@ -49,7 +49,7 @@ Quaternion WithinPyramid(const Quaternion& swing, const SwingTwistLimits& limits
 
 }  // namespace
 
-// What the rows of a step share, world space.
+// State shared by the rows of a step, world space.
 struct AngularControls::Motion {
     Matrix3 axes;        // of frame B
     Vector3 toTarget;    // rotation vector from the target, along the axes
@@ -84,7 +84,7 @@ uint32_t AngularControls::MaxRows() const {
     if (lock_ == AngularLock::Axis) return MaxControlRows(axes_[freeAxis_]);
     const SwingTwistLimits limits = Limits();
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
-    // As AddSwingLimits and AddTwistLimits have it.
+    // As many as AddSwingLimits and AddTwistLimits add.
     uint32_t count = limits.twist.IsFree() ? 0 : limits.twist.IsLocked() ? 1 : 2;
     if (IsLimited(y) && IsLimited(z)) count += shape_ == SwingShape::Pyramid ? 4 : 1;
     else count += (IsLimited(y) || IsLimited(z) ? 2u : 0u) + (y.IsLocked() ? 1u : 0u) + (z.IsLocked() ? 1u : 0u);
@@ -109,7 +109,7 @@ void AngularControls::SetTargetOrientation(const Quaternion& target) {
     }
 }
 
-// The target positions as an orientation within the limits.
+// The target positions as an orientation, clamped to the limits.
 Quaternion AngularControls::Target(const SwingTwistLimits& limits) const {
     const float twist = std::clamp(axes_[0].motor.targetPosition, limits.twist.minimum, limits.twist.maximum);
     Vector3 phi(0.0f, axes_[1].motor.targetPosition, axes_[2].motor.targetPosition);
@@ -161,25 +161,25 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     const SwingTwistLimits limits = Limits();
     const Motion motion = MotionOf(pose, limits);
     RotationLimitList list;
-    // Edges far off are not looked at: an ellipse and a pyramid contain the circle of their smallest angle.
+    // Edges out of reach are skipped: an ellipse and a pyramid contain the circle of their smallest angle.
     float reach = (1.25f * std::max(Length(motion.velocity), Length(motion.motorSpeed)) + kAngularSlackSpeed) * pose.dt;
     for (int k = 0; k < 3; ++k)
-        reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
+        reach += SpringTravel(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
-    // An edge that curves is best seen from where the swing goes.
+    // A curved edge is linearized at the predicted swing.
     const bool curves = IsLimited(y) && IsLimited(z) && limits.shape == SwingShape::Ellipse;
     const auto [frameB, time] = curves ? pose.FrameBAhead() : std::pair(pose.frameB, 0.0f);
     const SwingTwist turned = Decompose(pose.frameA.Conjugate() * frameB);
     const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
     if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach) AddSwingLimits(list, turned, limits);
-    // Where the x axes are nearly opposite twist means little, and its limit may push against what brings the swing
-    // back.
+    // If the x axes are nearly opposite, twist is ill-defined, and its limit may work against the swing limit that
+    // reduces the swing.
     constexpr float kOpposite = 0.3f, kFarOut = 0.5f;  // cos(alpha / 2); rad
     const bool isSwungFar =
         turned.swing.w < kOpposite &&
         std::any_of(list.begin(), list.end(), [](const RotationLimit& limit) { return limit.error < -kFarOut; });
     if (!isSwungFar) AddTwistLimits(list, turned, limits.twist);
-    // What a limit's axis is seen from.
+    // Transforms the limit's axis to world space.
     for (int i = 0; i < list.count; ++i) {
         RotationLimit& limit = list.limits[static_cast<size_t>(i)];
         limit.axis = Rotate(pose.frameA, limit.axis);
@@ -200,13 +200,13 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
             AddLockRow(spring, row, limit.error, firstSlot + SlotOfLimit(limit.slot), rows);
             continue;
         }
-        // A swing reaches its curved edge from the side as well, so that all of its speed counts.
+        // The swing may reach a curved edge by moving sideways, so its whole speed counts.
         const float closing = axis == 0 ? -Dot(limit.axis, motion.velocity) : Length(motion.velocity);
         const float speed = std::max({0.0f, closing, -Dot(limit.axis, motion.motorVelocity)});
         float reach = (1.25f * speed + kAngularSlackSpeed) * pose.dt;
         for (int k = 0; k < 3; ++k) {
             const float way = motion.toTarget[k] * Dot(limit.axis, AxisOf(motion.axes, k));
-            reach += WayOfSpring(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
+            reach += SpringTravel(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
         }
         if (limit.error > reach) continue;
         AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows).yields =
@@ -214,8 +214,8 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
     }
 }
 
-// As in AddControlRows, a motor asks for no more speed than hard limits allow, and well beyond one does not hold it
-// there.
+// As in AddControlRows: the target speed is clamped to what hard limits allow, and a motor well beyond a limit does not
+// hold the axis there.
 void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list,
                                    uint32_t firstSlot, JointRowList& rows) const {
     Vector3 allowed = motion.motorVelocity;

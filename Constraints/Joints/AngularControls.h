@@ -1,5 +1,5 @@
-// Rotation of B against A about three axes, each with limits, motor and friction: what swing-twist and
-// six-degrees-of-freedom joints share. Called by these; no threads.
+// Rotation of B against A about three axes, each with limits, motor and friction: shared by swing-twist and six-dof
+// joints, which call it. One thread per joint.
 //
 //   Coordinates (SwingTwist.h): twist about x, swing about y and z as the rotation vector phi. An axis is free, limited
 //   or, where its limits are the same, locked. Axes that are hard and locked at zero from the start become a block:
@@ -20,19 +20,19 @@ namespace fulcrum {
 
 class AngularControls {
 public:
-    // x, y, z; rad, N m. Limits as SwingTwistLimits wants them: in -pi..pi, of y and z around 0, for an ellipse the
-    // same to both sides.
+    // x, y, z; rad, N m. Limits as SwingTwistLimits requires them: in -pi..pi, those of y and z contain 0, for an
+    // ellipse they are symmetric.
     AngularControls(const std::array<AxisControl, 3>& axes, SwingShape shape);
 
-    // Of the limits of x, y, z: 0, 1, 2.
+    // Bounds of the limits of axis 0, 1, 2 (x, y, z).
     static LimitBounds BoundsOf(int axis, SwingShape shape);
     LimitBounds BoundsOf(int axis) const { return BoundsOf(axis, shape_); }
 
     AngularLock Lock() const { return lock_; }
-    uint8_t FreeAxis() const { return freeAxis_; }  // of AngularLock::Axis
+    uint8_t FreeAxis() const { return freeAxis_; }  // for AngularLock::Axis
     uint32_t MaxRows() const;
     void Start(const JointPose& pose);
-    // Each axis has its ControlSlots, from firstSlot on.
+    // Each axis uses its own ControlSlots, starting at firstSlot.
     void CollectRows(const JointPose& pose, uint32_t firstSlot, JointRowList& rows);
     AxisControl& At(int axis) { return axes_[static_cast<size_t>(axis)]; }
     void SetTargetOrientation(const Quaternion& target);

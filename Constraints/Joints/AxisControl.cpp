@@ -8,7 +8,7 @@ namespace fulcrum {
 
 namespace {
 
-// A row along `motion` times sign.
+// Adds a row with the Jacobian of `motion` times sign.
 JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Kind kind, JointRowList& rows) {
     JointRow& row = rows.Add(slot, kind);
     const RowJacobian<float>& j = motion.jacobian;
@@ -21,7 +21,7 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
 
 bool LimitsLock(const AxisControl& control) { return control.limited && control.limits.min >= control.limits.max; }
 
-// How far the axis may get within the step in the direction of `sign`.
+// Upper bound of the position that the axis may reach within the step in the direction of `sign`.
 float Reach(const AxisControl& control, double position, float speed, float sign, float slackSpeed, float dt) {
     const JointMotor& motor = control.motor;
     float closing = std::max(0.0f, sign * speed);
@@ -29,7 +29,7 @@ float Reach(const AxisControl& control, double position, float speed, float sign
     float reach = (1.25f * closing + slackSpeed) * dt;
     if (motor.mode == MotorMode::ToPosition) {
         const float target = std::clamp(motor.targetPosition, control.limits.min, control.limits.max);
-        reach += WayOfSpring(motor.spring, std::max(0.0f, sign * static_cast<float>(target - position)), dt);
+        reach += SpringTravel(motor.spring, std::max(0.0f, sign * static_cast<float>(target - position)), dt);
     }
     return reach;
 }
@@ -40,7 +40,7 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
     if (motor.mode == MotorMode::ToPosition) {
         const double target = control.limited ? std::clamp(motor.targetPosition, control.limits.min, control.limits.max)
                                               : motor.targetPosition;
-        // Beyond a stop its spring pulls no more than at it.
+        // Beyond a hard stop the spring pulls no more than at the stop.
         if (control.limited && IsHard(control.limits.spring))
             position = std::clamp(position, static_cast<double>(control.limits.min - kLimitSlop),
                                   static_cast<double>(control.limits.max + kLimitSlop));
@@ -55,9 +55,9 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
     row.minForce = motor.minForce;
     row.maxForce = motor.maxForce;
     if (!control.limited || !IsHard(control.limits.spring)) return;
-    // A motor that pushed on against a hard stop would have both rows' impulses grow without end. It wants no more than
-    // the limit allows at any time of the step, which is to be there a substep later. Well beyond the limit it must not
-    // hold what the limit pushes back.
+    // A motor that works against a hard stop would let both rows' impulses grow without bound. So its target speed is
+    // at most what the limit allows: reaching the limit one substep later. Well beyond the limit the motor must not
+    // resist the limit's correction.
     const float below = static_cast<float>(control.limits.max - position);
     const float above = static_cast<float>(position - control.limits.min);
     row.speed = std::min(row.speed, std::max(below, -kLimitSlop) / timeToLimit);
@@ -68,11 +68,12 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
 
 }  // namespace
 
-float WayOfSpring(const SpringSettings& spring, float way, float dt) {
-    if (IsHard(spring)) return way;
-    if (spring.mode == SpringMode::StiffnessAndDamping) return 2.0f * way;  // the mass is not known here
+float SpringTravel(const SpringSettings& spring, float distance, float dt) {
+    if (IsHard(spring)) return distance;
+    if (spring.mode == SpringMode::StiffnessAndDamping)
+        return 2.0f * distance;  // upper bound, since the mass is unknown here
     const float phase = 6.28318531f * spring.frequency * dt;
-    return way * std::min(2.0f, 0.5f * phase * phase);
+    return distance * std::min(2.0f, 0.5f * phase * phase);
 }
 
 float StretchSpeed(float distance, float speed, float dt) {

@@ -1,5 +1,5 @@
-// What a joint does along one of its free axes: limits, a motor, friction. The user sets it when the joint is made and
-// may change it between steps; joint types turn it into rows in CollectRows. Plain data and free functions, no threads.
+// Limits, motor and friction of one free axis of a joint. Set by the user when the joint is created, may be changed
+// between steps; joint types turn it into rows in CollectRows. Plain data and free functions, no threads.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/SpringSettings.h>
@@ -19,22 +19,23 @@ enum class JointAxis : uint8_t { LinearX, LinearY, LinearZ, AngularX, AngularY, 
 // m or rad.
 struct JointLimits {
     float min = 0.0f;
-    float max = 0.0f;         // >= min; the same: locked there
+    float max = 0.0f;         // >= min; equal to min: locked there
     SpringSettings spring{};  // frequency 0 or stiffness 0: a hard stop
 };
 
 enum class MotorMode : uint8_t {
     Off,
-    ToVelocity,  // reaches targetSpeed
-    ToPosition,  // pulls to targetPosition by its spring
+    ToVelocity,  // drives the axis at targetSpeed
+    ToPosition,  // drives the axis to targetPosition by its spring
 };
 
 struct JointMotor {
     MotorMode mode = MotorMode::Off;
-    float targetSpeed = 0.0f;     // m/s or rad/s; a hard limit is approached so that it is met, not hit
-    float targetPosition = 0.0f;  // m or rad; beyond the limits: the nearer limit
+    float targetSpeed =
+        0.0f;  // m/s or rad/s; reduced near a hard limit, so that the axis stops there without an impact
+    float targetPosition = 0.0f;  // m or rad; clamped to the limits
     SpringSettings spring = {.frequency = 2.0f,
-                             .dampingRatio = 1.0f};            // of ToPosition; hard: as fast as the forces allow
+                             .dampingRatio = 1.0f};            // for ToPosition; hard: as fast as the forces allow
     float minForce = -std::numeric_limits<float>::infinity();  // N or N m, <= 0
     float maxForce = std::numeric_limits<float>::infinity();   // N or N m, >= 0
 };
@@ -46,7 +47,7 @@ struct AxisControl {
     float friction = 0.0f;  // N or N m, >= 0: the largest force against motion
 };
 
-// What the limits of an axis may be, m or rad: lowest <= min <= highestMin, lowestMax <= max <= highest.
+// Valid ranges of an axis' limits, m or rad: lowest <= min <= highestMin, lowestMax <= max <= highest.
 struct LimitBounds {
     static constexpr float kEndless = std::numeric_limits<float>::infinity();
     float lowest = -kEndless, highestMin = kEndless, lowestMax = -kEndless, highest = kEndless;
@@ -58,11 +59,11 @@ inline bool IsHard(const SpringSettings& spring) {
     return (spring.mode == SpringMode::StiffnessAndDamping ? spring.stiffness : spring.frequency) <= 0.0f;
 }
 
-// Whether the motor goes on pushing at a limit, which must then be a hard row: a strong motor would push a soft one
-// back by 0.01 rad.
+// Whether the motor keeps pressing against a limit, which must then be a hard row: a strong motor would deflect a soft
+// one by 0.01 rad.
 inline bool PressesOnLimits(const JointMotor& motor) { return motor.mode == MotorMode::ToVelocity; }
 
-// Slots of the rows of one axis, counted from the axis' first one.
+// Slots of the rows of one axis, relative to the axis' first slot.
 struct ControlSlots {
     static constexpr uint32_t kLowLimit = 0, kHighLimit = 1, kMotor = 2, kFriction = 3, kCount = 4;
 };
@@ -70,31 +71,33 @@ struct ControlSlots {
 // The largest number of rows that AddControlRows adds.
 uint32_t MaxControlRows(const AxisControl& control);
 
-// Margin on the speed of an axis, now or of its motor, when it is decided which limits may be reached within the step:
-// other accelerations are not known then. 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit acts one step late.
+// Margin added to the speed of an axis (current, or of its motor) when deciding which limits may be reached within the
+// step, since other accelerations are not known then. Covers 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit acts
+// one step late.
 inline constexpr float kLinearSlackSpeed = 1.0f;   // m/s
 inline constexpr float kAngularSlackSpeed = 2.0f;  // rad/s
 
-// The farthest that the spring of a position motor can move an axis within dt, s, from rest at a distance of `way`, m
-// or rad, from its target: that of an undamped oscillator, way (1 - cos(w dt)).
-float WayOfSpring(const SpringSettings& spring, float way, float dt);
+// The largest displacement that the spring of a position motor can cause within dt, s, from rest at `distance`, m or
+// rad, from its target: that of an undamped oscillator, distance (1 - cos(w dt)).
+float SpringTravel(const SpringSettings& spring, float distance, float dt);
 
-// How fast, m/s on average over the step, the distance between two points may grow because they move across it at
-// `speed`, m/s: by (v dt)^2 / 2 d in the step, and by v dt at most.
+// Growth rate, m/s, average over the step, of the distance between two points due to relative motion perpendicular to
+// the line between them at `speed`, m/s: (v dt)^2 / 2 d in the step, v dt at most.
 float StretchSpeed(float distance, float speed, float dt);
 
-// An axis beyond its limit by less than this, m or rad, counts as at it: rounding must not switch motors off and on.
+// An axis beyond its limit by less than this, m or rad, counts as at the limit, so that rounding does not switch motors
+// on and off.
 inline constexpr float kLimitSlop = 1e-3f;
 
-// Adds the row that keeps C >= 0: C is `error`, and its rate J v of `motion` times sign.
+// Adds the row that keeps C >= 0, with C = `error` and J that of `motion` times sign.
 JointRow& AddLimitRow(const SpringSettings& spring, const JointRow& motion, float sign, float error, uint32_t slot,
                       JointRowList& rows);
 // Adds the row that keeps C = 0.
 void AddLockRow(const SpringSettings& spring, const JointRow& motion, float error, uint32_t slot, JointRowList& rows);
 
-// Adds the rows of an axis at `position` (m or rad) whose rate is J v of `motion` (only the Jacobian is read): each
-// limit that may be reached within the step, the motor if it is on, friction if there is any. Limits come last: where
-// rows disagree, they win.
+// Adds the rows of an axis at `position` (m or rad) with rate J v, J that of `motion` (only its Jacobian is read): the
+// limits that may be reached within the step, the motor if on, friction if any. Limits are added last, so they win over
+// the other rows.
 void AddControlRows(const AxisControl& control, const JointPose& pose, const JointRow& motion, double position,
                     float slackSpeed, uint32_t firstSlot, JointRowList& rows);
 

@@ -1,7 +1,7 @@
-// N ball joints side by side, solved in lanes: joints that hold two points together and do nothing else, the most
-// frequent kind. What JointBatch.h says of joints holds for them; they have kernels and a batch of their own because a
-// large part of their time is the way from memory, and this is a third smaller. No two joints of a batch share a moving
-// body. Called by the stages Prepare, Solve and Store; one thread per batch.
+// N ball joints side by side, solved in lanes: joints with a point lock and nothing else, the most frequent kind.
+// JointBatch.h explains the solver; ball joints have a batch and kernels of their own because their cost is mostly
+// memory traffic, and this batch is a third smaller. No two joints of a batch share a dynamic body. Called by the
+// stages Prepare, Solve and Store; one thread per batch.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
@@ -15,29 +15,29 @@ struct alignas(64) BallBatch {
     uint32_t joint[N];  // indices of the records; the first `count` lanes are in use
     int32_t count;
     uint32_t fixedA, fixedB;          // bit i: the body of lane i is not dynamic
-    uint32_t kinematicA, kinematicB;  // bit i: but it moves
-    bool round;                       // no body has an inertia that depends on the direction
-    bool turning;                     // inertias of some lane turn from substep to substep: they are read again
+    uint32_t kinematicA, kinematicB;  // bit i: not dynamic, but kinematic and moving
+    bool round;                       // all bodies have isotropic inertia
+    bool turning;  // some lane's inertia rotates with its body: inertias are read anew in every substep
 
     Vec3<Real> impulse;           // on B, of this substep, N s
     Vec3<Real> push;              // m/s
-    Vec3<Real> armA, armB;        // from the centers to the point at which impulses act, m
+    Vec3<Real> armA, armB;        // from the centers of mass to the point at which impulses act, m
     Sym3<Real> mass;              // K^-1, see PointPart.h
-    Vec3<Real> turnedA, turnedB;  // rad/s: what the turning of the arms changed of the impulse
-    Vec3<Real> earlier;           // impulses of the substeps before, summed
+    Vec3<Real> turnedA, turnedB;  // rad/s: change of velocity due to the rotation of the arms
+    Vec3<Real> earlier;           // sum of the impulses of earlier substeps
     Real inverseMassA, inverseMassB;
-    Real inverseInertiaA, inverseInertiaB;  // where all are round
+    Real inverseInertiaA, inverseInertiaB;  // if round
     Vec3<Real> startArmA, startArmB, startOffset;
-    Sym3<Real> inertiaA, inertiaB;  // inverses; where not all are round
+    Sym3<Real> inertiaA, inertiaB;  // inverses; if not round
 
-    // Of lanes that are far apart, as in JointBatch.
-    bool far;  // some lane is
+    // For lanes that are far apart, as in JointBatch.
+    bool far;  // some lane is far apart
     Real isFar, isDistant, follows;
-    Real secondsOfTeleport;  // as the step ends, see JointRecord
+    Real secondsOfTeleport;  // at the end of the step, see JointRecord
     Vec3<Real> pull;         // m/s
 };
 
-// As those of JointBatch.h. Of bodies that are not kinematic they read how far they turned as BodyState::halfTurn says.
+// Like the functions of JointBatch.h. The rotation of non-kinematic bodies is read from BodyState::halfTurn.
 template <int N>
 void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstSolverBodies& bodies,
                    const JointSolveSettings& settings, JointFindings& findings);

@@ -1,11 +1,11 @@
-// How far a body has turned about an axis that it carries: gears, pinions. Counted over any number of turns without
-// drift, whether the axis stands still or is carried about. Called by the joint types that mesh. A view of five numbers
-// of a joint's state; no threads.
+// Rotation angle of a body about an axis fixed in it (gears, pinions), counted over any number of revolutions without
+// drift, also if the axis itself moves. Called by gear and rack-and-pinion joints. A view of five numbers of a joint's
+// state; not thread-safe.
 //
-// With frame = reference swing twist (twist first, about x), the angle is that of the twist, up to whole turns, which
-// the way of the last step tells. The swing takes the reference's axis to the frame's along the shortest way and so
-// adds no turn of its own. The reference is kept, so that nothing accumulates, until the axis has left it by some
-// degrees; then the swing joins it.
+// With frame = reference swing twist (twist first, about x), the angle is that of the twist plus whole revolutions,
+// which are found from the rotation of the last step. The swing takes the reference's axis to the frame's by the
+// shortest rotation and so adds no twist. The reference is kept, so that no error accumulates, until the axis deviates
+// from it by some degrees; then the swing is merged into it.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
@@ -14,16 +14,17 @@ namespace fulcrum {
 
 class BearingAngle {
 public:
-    static constexpr size_t kNumbers = 5;  // the reference x y z w, rad
+    static constexpr size_t kNumbers = 5;  // reference quaternion x y z w, angle in rad
 
     explicit BearingAngle(std::span<double, kNumbers> numbers) : numbers_(numbers) {}
 
-    // Zero here. frame: world space, unit.
+    // Sets the angle to zero at this frame: world space, unit.
     void Start(const Quaternion& frame) {
         SetReference(frame);
         numbers_[4] = 0.0;
     }
-    // To the frame of now; it turned by about `turned` about x since. Both in rad, as what is returned.
+    // Advances to the current frame, which has rotated by approximately `turned`, rad, about x since the last call.
+    // Returns the angle, rad.
     double Advance(const Quaternion& frame, float turned) {
         const Quaternion rotation = Reference().Conjugate() * frame;
         const float twist = TwistAngle(rotation);

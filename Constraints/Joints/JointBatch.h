@@ -1,17 +1,17 @@
-// N joints of the same locks side by side, solved in lanes. No two joints of a batch share a moving body.
+// N joints with the same locks, solved in lanes. No two joints of a batch share a dynamic body.
 //
-// A joint is a linear lock, an angular lock (parts) and scalar rows. Within a joint the rows come first, then the
-// locks, which therefore win. Four things make few iterations converge:
-// - The parts are set up anew in every substep from the displacements since the start of the step, so that a joint
-//   follows the arc that its bodies turn along.
-// - A body keeps its constraints' share of velocity from substep to substep, in place of a warm start (Solve stage). By
-//   how much the rotation of a part changes its impulse is added then: `turnedA` and `turnedB`.
+// A joint consists of a linear lock, an angular lock (both parts) and scalar rows. Within a joint the rows are solved
+// first, then the locks, which therefore win. Four measures make few iterations sufficient:
+// - The parts are set up in every substep from the displacements since the start of the step, so that a joint follows
+//   the arcs along which its bodies move.
+// - Within a step, bodies keep their velocities from substep to substep, which replaces the warm start (Solve stage).
+//   Only the change due to the rotation of a part's impulse is added: `turnedA` and `turnedB`.
 // - A joint that locks translation and rotation solves both as one block.
-// - A row's impulse includes the reaction of the locks. With L the locks' Jacobian its response is
+// - A row's impulse response includes the reaction of the locks. With L the locks' Jacobian its response is
 //       M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T):
-//   it disturbs no lock, and a spring or a motor acts on the inertia that it really moves. The reaction of the locks,
-//   `lockLinear` and `lockAngular` per unit of impulse, is kept apart from the locks' own impulses, so that their
-//   softness does not act on it.
+//   a row disturbs no lock, and a spring or motor acts on the inertia that it actually moves. The reaction of the
+//   locks, `lockLinear` and `lockAngular` per unit of impulse, is kept apart from the locks' own impulses, so that
+//   their softness does not act on it.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
@@ -24,17 +24,18 @@
 
 namespace fulcrum {
 
-// What a joint keeps from step to step, rows of eight floats.
+// Persistent data of a joint, rows of eight floats.
 struct alignas(32) JointRecord {
     float anchorA[3] = {0, 0, 0}, anchorB[3] = {0, 0, 0};      // m, in the bodies' center frames
     float lineAxis = 0, freeAxis = 0;                          // JointLocks::line and ::axis
     float frameA[4] = {0, 0, 0, 1}, frameB[4] = {0, 0, 0, 1};  // x y z w, in the bodies' center frames
-    // On B, world axes: the locks' own impulses of the last substep, N s and N m s. And as averages over the last step,
-    // N and N m: those of the locks with their reaction to the rows, and of locks and rows together, about the anchor.
+    // On B, world axes: the locks' own impulses of the last substep, N s and N m s. Below, average forces and torques
+    // over the last step, N and N m: of the locks with their reaction to the rows, and of locks and rows together,
+    // about the anchor.
     float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
-    float wasPulled = 0;  // 1 and more: it was far apart in the last step; 0.5: it was pulled along by others that were
-    // s, that are left since a body of its mechanism was teleported. Counted down by the Store stage, but in steps in
-    // which a spring of it was overstretched.
+    float wasPulled = 0;  // >= 1: it was far apart in the last step; 0.5: connected to joints that were
+    // s: time left of the period after a teleport of a body of its mechanism. Counted down by the Store stage, except
+    // in steps in which one of its springs is overstretched.
     float secondsOfTeleport = 0;
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
@@ -44,7 +45,7 @@ struct alignas(32) JointRecord {
         return reinterpret_cast<const float*>(this) + kRowFloats * static_cast<size_t>(row);
     }
     float* Row(int row) { return reinterpret_cast<float*>(this) + kRowFloats * static_cast<size_t>(row); }
-    // Places in the first row, in the second, in those of forces, and what else kOwn has.
+    // Indices in the first row, in the second, in the rows of forces, and of the other members of kOwn.
     enum Places {
         kAnchorA = 0,
         kAnchorB = 3,
@@ -74,29 +75,30 @@ FULCRUM_CHECK_PLACE(JointRecord, lockTorque, JointRecord::kLocks, JointRecord::k
 FULCRUM_CHECK_PLACE(JointRecord, totalForce, JointRecord::kTotal, JointRecord::kForce);
 FULCRUM_CHECK_PLACE(JointRecord, totalTorque, JointRecord::kTotal, JointRecord::kTorque);
 
-// One row of each of N joints; lanes without a row have no Jacobian, and are inactive.
+// One row of each of N joints; lanes without a row have a zero Jacobian and are inactive.
 template <int N>
 struct JointRows {
     using Real = Wide<N>;
-    RowPart<Real> part;                  // its response: with the reaction of the locks
+    RowPart<Real> part;                  // its response includes the reaction of the locks
     Vec3<Real> lockLinear, lockAngular;  // change of the locks' impulses by a unit of impulse
     Real startError, error;              // C, m or rad, at the start of the step and now
-    Real speed;                          // m/s or rad/s that J v is to be
-    Real lowest, highest;                // N s or N m s, of the total impulse
-    Real earlier;                        // N s or N m s: the sum of the substeps before
-    // What pushes the error away, see RowSoftness.h: pushRate is massScale beta, 1/s; mostPush the limit of pushRate C,
-    // m/s or rad/s.
+    Real speed;                          // m/s or rad/s: target of J v
+    Real lowest, highest;                // N s or N m s, limits of the accumulated impulse
+    Real earlier;                        // N s or N m s: sum over earlier substeps
+    // Error correction, see RowSoftness.h: pushRate is massScale beta, 1/s; mostPush the limit of pushRate C, m/s or
+    // rad/s.
     RowSoftness<Real> softness;
     Real pushRate, mostPush;
-    // One-sided rows whose error is above `openAbove` are open: they stop what would close the gap within a substep
-    // (gapRate C, 1/s), with `openSoftness`. Springs are not relaxed: their openSoftness is (0, 1).
+    // Inequality rows with an error above `openAbove` are open: they only limit the approach so that the gap closes no
+    // faster than within a substep (gapRate C, 1/s), with `openSoftness`. Springs are not relaxed: their openSoftness
+    // is (0, 1).
     Real openAbove, gapRate;
     RowSoftness<Real> openSoftness;
-    Real turnsWithA;  // 1: J turns with A from substep to substep
-    Real radial;      // 1: the row acts along the line between the anchors and turns with it
+    Real turnsWithA;  // 1: J rotates with A from substep to substep
+    Real radial;      // 1: the row acts along the line between the anchors and rotates with it
     Real about;       // 1: its error is an angle
     Real waits;       // 1: inactive in this step, because the joint is far apart
-    Real pulled;      // N s or N m s that changed pseudo-velocities, see PullJoints
+    Real pulled;      // N s or N m s: impulse applied to pseudo-velocities, see PullJoints
     uint8_t slot[N];  // 0xFF: no row
 };
 
@@ -110,9 +112,9 @@ struct JointBatch {
     uint32_t kinematicA, kinematicB;  // bit i: but it moves
     LinearLock linear;
     AngularLock angular;
-    uint32_t rowCount;           // largest of the lanes
-    uint32_t rowRoom;            // as many as the types may add
-    bool rowsTurnWithA, radial;  // some row of some lane does or is
+    uint32_t rowCount;           // maximum over the lanes
+    uint32_t rowRoom;            // the most that the types may add
+    bool rowsTurnWithA, radial;  // set if any row of any lane has it
     bool turning;                // inertias of some lane turn from substep to substep: they are read again
     JointRows<N>* rows;
     bool overridesMass = false;  // some lane has a MassOverride
@@ -121,33 +123,33 @@ struct JointBatch {
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
     Twist<Real> turnedA, turnedB;
-    Vec3<Real> earlierLinear, earlierAngular;    // impulses and reactions of the locks, summed over the substeps before
-    Real turns;                                  // 1: those of this lane do
-    Vec3<Real> reactionLinear, reactionAngular;  // of the locks to the rows; only where there are rows
-    Twist<Real> wayA, wayB;                      // displacements at which rows were set up last
+    Vec3<Real> earlierLinear, earlierAngular;    // sums of the locks' impulses and reactions over earlier substeps
+    Real turns;                                  // 1: the inertia of this lane rotates
+    Vec3<Real> reactionLinear, reactionAngular;  // reaction of the locks to the rows; only if there are rows
+    Twist<Real> wayA, wayB;                      // displacements at the last set-up of the rows
 
     RotationEulerPart<Real> rotation;
-    Quat<Real> inverseInitial;  // of turns since the start of the step, for AngularLock::All
+    Quat<Real> inverseInitial;  // of rotations since the start of the step, for AngularLock::All
     HingeRotationPart<Real> hinge;
-    Vec3<Real> startAxisA, startAxisB, startNormal;  // for AngularLock::Axis; the normal is one of B's
+    Vec3<Real> startAxisA, startAxisB, startNormal;  // for AngularLock::Axis; the normal belongs to B
     DualAxisPart<Real> line;
-    Vec3<Real> startLine, startLineNormal;  // for LinearLock::Line, of A
+    Vec3<Real> startLine, startLineNormal;  // for LinearLock::Line, belongs to A
 
-    // Where a joint locks both, its rows are solved as one block: with C = L_linear M^-1 L_angular^T, by columns, and
-    // S = K_linear - C K_angular^-1 C^T.
+    // If a joint has both locks, their rows are solved as one block: with C = L_linear M^-1 L_angular^T, by columns,
+    // and S = K_linear - C K_angular^-1 C^T.
     Vec3<Real> cross[3];
     Sym3<Real> coupledPoint;  // S^-1
     Sym2<Real> coupledLine;
 
-    // Of the lanes that are far apart: what their locks are pulled by in place of a bias, see PullJoints.
-    bool far;                            // some lane is
-    Real isFar;                          // 1 and more: this one is, see JointRecord::wasPulled
-    Real isDistant;                      // 1: by so much that a lever would be as long as the gap
-    Real follows;                        // 0.5: its bodies are pulled, be it by others
-    Real secondsOfTeleport;              // as the step ends, see JointRecord
+    // For lanes that are far apart: the pseudo-velocity that closes their gap, in place of a bias, see PullJoints.
+    bool far;                            // some lane is far apart
+    Real isFar;                          // >= 1: this one is, see JointRecord::wasPulled
+    Real isDistant;                      // 1: the gap is so large that it is closed without lever arms
+    Real follows;                        // 0.5: its bodies have pseudo-velocities, maybe from other joints
+    Real secondsOfTeleport;              // at the end of the step, see JointRecord
     Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
 
-    // Of a MassOverride; only where `overridesMass`.
+    // Scales of a MassOverride; only if `overridesMass`.
     Real massScaleA, inertiaScaleA, massScaleB, inertiaScaleB;
 
     void SetMassOverride(int lane, const MassOverride& o) {
@@ -158,8 +160,8 @@ struct JointBatch {
     }
 };
 
-// Rotation vectors of a step up to this length, rad, are composed as rotations; longer ones are added, since their
-// composition has no derivative at a full turn.
+// Rotation vectors of a step up to this length, rad, are composed as rotations; longer ones are added, since the
+// composition is singular at a full revolution.
 namespace joints {
 inline constexpr float kFarthestTurn = 5.5f;
 }
@@ -169,24 +171,24 @@ struct JointSolveSettings {
     float inverseDt;      // 1/s, of the substep
     float elapsed;        // s since the start of the step
     float impulseScale;   // dt of this substep / dt of the last: scales the warm start
-    // Errors are corrected by a soft block, as overlaps are: see ContactSolveSettings.
+    // Errors are corrected by a soft block, like contact overlaps: see ContactSolveSettings.
     float pushRate;
     RowSoftness<float> softness;
     float maxPushSpeed;  // m/s and rad/s
-    bool pushes;         // else errors are corrected by position passes (CorrectJoints), and rows are hard
-    float baumgarte;     // 0..1: the part of an error that a position pass corrects; at most by maxPushSpeed substepDt
-    bool continues;      // the first velocity iteration of a substep that is not the first of its step
-    bool firstPass;      // the first relaxing pass of a substep, or the first of PullJoints
+    bool pushes;         // false: errors are corrected by position iterations (CorrectJoints), and rows are hard
+    float baumgarte;  // 0..1: fraction of an error corrected per position iteration, limited to maxPushSpeed substepDt
+    bool continues;   // first velocity iteration of a substep other than the step's first
+    bool firstPass;   // first relax iteration of a substep, or first iteration of PullJoints
 };
 
-// What Prepare noticed.
+// Results of Prepare.
 struct JointFindings {
-    float linearError = 0, angularError = 0;  // m, rad: the largest
+    float linearError = 0, angularError = 0;  // m, rad: largest joint errors
     uint32_t linearJoint = ~0u, angularJoint = ~0u;
-    bool far = false;  // some are pulled, see PullJoints
+    bool far = false;  // some joints are far apart, see PullJoints
 };
 
-// Fills the batch whose lanes, fixed and kinematic bits, locks and room for rows are set.
+// Fills the batch; its lanes, fixed and kinematic bits, locks and rowRoom must be set.
 template <int N>
 void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
                    const ConstSolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings);
@@ -195,34 +197,34 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
 template <int N>
 void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
 
-// Adds the change of the parts' impulses by their rotation in the last substep, which SolveJointVelocities does itself
-// where settings.continues is set.
+// Adds the change of the parts' impulses due to their rotation in the last substep. SolveJointVelocities does that
+// itself if settings.continues is set.
 template <int N>
-void TurnJoints(JointBatch<N>& batch, BodyState* states);
+void RotateJointImpulses(JointBatch<N>& batch, BodyState* states);
 
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
 
-// Sets the parts up at the displaced poses and solves the velocities there without any push.
+// Relax iteration: sets the parts up at the displaced poses and solves the velocities there without error correction.
 template <int N>
 void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
-// The set-up of RelaxJoints alone, for solves without position iterations.
+// Only the set-up of RelaxJoints, for solves without relax iterations.
 template <int N>
 void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
-// A position pass (Baumgarte): sets the parts up at the displaced poses and moves the bodies there, adds no speed.
+// A position iteration (Baumgarte): sets the parts up at the displaced poses and corrects the poses, adds no velocity.
 // Joints that are far apart are left to PullJoints.
 template <int N>
 void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
 
-// One pass over the pseudo-velocities, in the velocities' place in `pseudo`, by which joints that are far apart are
-// pulled together: these give them, the others hold against them.
+// One iteration over the pseudo-velocities (split impulses), which are in `pseudo` in place of the velocities: joints
+// that are far apart are pulled together, the others resist.
 template <int N>
 void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings);
 
-// Writes the impulses back, divided by `impulseScale`, the forces of the step, dt seconds long, and how far bodies
-// turned.
+// Writes the impulses back, divided by `impulseScale`, the average forces of the step, dt seconds long, and the
+// rotation of the bodies.
 template <int N>
 void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states,
                  float dt, float impulseScale);

@@ -1,5 +1,5 @@
-// What a picture of a joint shows besides its frames, its locks and its error. Made by the joint's type; whoever draws
-// it knows no types. Plain data.
+// What to draw of a joint besides its frames, locks and error. Provided by the joint's type, so that renderers need not
+// know the types. Plain data.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/Path.h>
@@ -12,19 +12,19 @@
 namespace fulcrum {
 
 struct JointDrawing {
-    // Ranges: the limits of axes as they are at the moment.
-    bool rotations = false;  // about what the locks leave free: a sector, or a cone for the swing and one for the twist
-    bool translations = false;              // along x, y and z of frame A together: a line, a rectangle or a box
-    bool steering = false;                  // about y of frame A: a sector about its x axis
-    std::optional<int> trackA{}, trackB{};  // along one axis of a frame: 0, 1, 2 for x, y, z
-    bool isPyramid = false;                 // the cone of the swing; else an ellipse
-    float coneAngle = std::numeric_limits<float>::infinity();  // rad: a round cone beside the limits of axes
+    // Ranges: the current limits of axes.
+    bool rotations = false;     // about the axes left free by the locks: a sector, or a swing cone and a twist sector
+    bool translations = false;  // along x, y and z of frame A together: a line, a rectangle or a box
+    bool steering = false;      // about y of frame A: a sector about its x axis
+    std::optional<int> trackA{}, trackB{};                     // along one axis of a frame: 0, 1, 2 for x, y, z
+    bool isPyramid = false;                                    // shape of the swing cone; else an ellipse
+    float coneAngle = std::numeric_limits<float>::infinity();  // rad: a circular cone in addition to the limits of axes
 
-    // Circles about the x axes of the frames, each with a spoke along y. m; 0: as large as the joint is drawn.
+    // Circles about the x axes of the frames, each with a spoke along y. m; 0: sized like the rest of the drawing.
     std::optional<float> circleA{}, circleB{};
 
-    // A rope from A's anchor over the points to B's. Its length, to B's side `ropeRatio` times, is the coordinate
-    // LinearX.
+    // A rope from A's anchor over the points to B's. Its length, with B's side counted `ropeRatio` times, is the
+    // coordinate LinearX.
     bool isRope = false;
     float ropeRatio = 1.0f;
     std::vector<Position> ropePoints{};  // m, world space

@@ -1,15 +1,14 @@
-// Shared by the joint kernels: lanes from and to the bodies, choosing the code by a batch's locks, setting the parts
-// up.
+// Shared by the joint kernels: dispatch by a batch's locks, set-up and solve of the parts.
 #pragma once
 
-#include <Fulcrum/Constraints/BodyLanes.h>
-#include <Fulcrum/Constraints/Joints/JointBatch.h>
+#include <Fulcrum/Constraints/Joints/FarJoints.h>
+#include <Fulcrum/Constraints/Joints/JointLanes.h>
 
 #include <cmath>
 
 namespace fulcrum::joints {
 
-// Calls f(std::integral_constant<LinearLock, ...>, std::integral_constant<AngularLock, ...>) with the batch's.
+// Calls f(std::integral_constant<LinearLock, ...>, std::integral_constant<AngularLock, ...>) with the batch's locks.
 template <class F>
 FULCRUM_FORCE_INLINE void WithLocks(LinearLock linear, AngularLock angular, F&& f) {
     const auto withAngular = [&](auto l) {
@@ -26,132 +25,8 @@ FULCRUM_FORCE_INLINE void WithLocks(LinearLock linear, AngularLock angular, F&& 
     }
 }
 
-template <int N>
-struct Motion {
-    using Real = Wide<N>;
-    float* rows[N];
-    Real row[8];
-
-    template <BodyRow kRow>
-    FULCRUM_FORCE_INLINE void Gather(const uint32_t (&bodies)[N], BodyState* states) {
-        for (int i = 0; i < N; ++i) rows[i] = RowOf<kRow>(states[bodies[i]]);
-        GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
-    }
-    FULCRUM_FORCE_INLINE Twist<Real> Get() const {
-        return {VectorAt<BodyState::kLinear>(row), VectorAt<BodyState::kAngular>(row)};
-    }
-    // Lanes of bodies that are not dynamic are written nowhere.
-    FULCRUM_FORCE_INLINE void Scatter(const Twist<Real>& motion, int count, uint32_t fixed) {
-        Set(motion);
-        Scatter(count, fixed);
-    }
-    FULCRUM_FORCE_INLINE void Set(const Twist<Real>& motion) {
-        SetVectorAt<BodyState::kLinear>(row, motion.linear);
-        SetVectorAt<BodyState::kAngular>(row, motion.angular);
-    }
-    FULCRUM_FORCE_INLINE void Scatter(int count, uint32_t fixed) {
-        alignas(32) float nowhere[8];
-        if (fixed != 0)
-            for (int i = 0; i < N; ++i)
-                if (fixed >> i & 1u) rows[i] = nowhere;
-        ScatterRows<N>(rows, row, count);
-    }
-};
-
-// Velocities of A and of B.
-template <int N>
-struct Velocities {
-    Twist<Wide<N>> a, b;
-
-    template <class Batch>
-    FULCRUM_FORCE_INLINE Velocities(const Batch& batch, BodyState* states) {
-        Motion<N> motion;
-        motion.template Gather<BodyRow::Velocity>(batch.bodyA, states);
-        a = motion.Get();
-        motion.template Gather<BodyRow::Velocity>(batch.bodyB, states);
-        b = motion.Get();
-    }
-};
-
-// Adds to the displacements of the bodies.
-template <int N, class Batch>
-FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, const Twist<Wide<N>>& byA,
-                                     const Twist<Wide<N>>& byB) {
-    const auto move = [&](const uint32_t(&body)[N], const Twist<Wide<N>>& by, uint32_t fixed) {
-        Motion<N> pose;
-        pose.template Gather<BodyRow::Displacement>(body, states);
-        const Twist<Wide<N>> from = pose.Get();
-        pose.Set({from.linear + by.linear, from.angular + by.angular});
-        SetHalfTurn<Wide<N>>(pose.row);
-        pose.Scatter(batch.count, fixed);
-    };
-    move(batch.bodyA, byA, batch.fixedA);
-    move(batch.bodyB, byB, batch.fixedB);
-}
-
-// Calls change(velocities of A, of B), and writes these back.
-template <int N, class Batch, class F>
-FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states, F&& change) {
-    Motion<N> motionA, motionB;
-    motionA.template Gather<BodyRow::Velocity>(batch.bodyA, states);
-    motionB.template Gather<BodyRow::Velocity>(batch.bodyB, states);
-    Twist<Wide<N>> a = motionA.Get(), b = motionB.Get();
-    change(a, b);
-    motionA.Scatter(a, batch.count, batch.fixedA);
-    motionB.Scatter(b, batch.count, batch.fixedB);
-}
-
-// The masses that the bodies have for these joints. Returns the lanes in which an inertia turns.
-template <int N>
-FULCRUM_FORCE_INLINE auto GatherMasses(JointBatch<N>& batch, const BodyMass* masses) {
-    const auto turns =
-        GatherMass<N>(batch.bodyA, masses, batch.massA) | GatherMass<N>(batch.bodyB, masses, batch.massB);
-    if (batch.overridesMass) {
-        ScaleMass(batch.massA, batch.massScaleA, batch.inertiaScaleA);
-        ScaleMass(batch.massB, batch.massScaleB, batch.inertiaScaleB);
-    }
-    return turns;
-}
-
-template <int N>
-FULCRUM_FORCE_INLINE void GatherRecordRow(const uint32_t (&joints)[N], const JointRecord* records, int row,
-                                          Wide<N> (&out)[8]) {
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
-    GatherRows<N>(rows, out);
-}
-
-// Clamps arms and distances of anchors along each axis: beyond that joints are pulled no faster, and the inertia at the
-// end of a longer arm may not fit a float.
-template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> WithinReach(const Vec3<Real>& v) {
-    const Real farthest(1e6f);
-    Vec3<Real> result;
-    for (int k = 0; k < 3; ++k) result[k] = Clamp(Real(v[k]), -farthest, farthest);
-    return result;
-}
-
-// The locks' impulses of the last substep; what is not finite as zero.
-template <int N>
-FULCRUM_FORCE_INLINE void GatherImpulses(const uint32_t (&joints)[N], const JointRecord* records, Wide<N> (&out)[8]) {
-    GatherRecordRow<N>(joints, records, JointRecord::kOwn, out);
-    for (Wide<N>& x : out) x = Select(Abs(x) < Wide<N>(JointRow::kUnlimited), x, Wide<N>(0.0f));
-}
-
-// Writes a row of the first `count` records; what is not finite as zero.
-template <int N>
-FULCRUM_FORCE_INLINE void ScatterRecordRow(const uint32_t (&joints)[N], int count, JointRecord* records, int row,
-                                           const Wide<N> (&values)[8]) {
-    using Real = Wide<N>;
-    float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = records[joints[i]].Row(row);
-    Real out[8];
-    for (int k = 0; k < 8; ++k) out[k] = Select(Abs(values[k]) < Real(JointRow::kUnlimited), values[k], Real(0.0f));
-    ScatterRows<N>(rows, out, count);
-}
-
-// Where between two anchors a point joint's impulse and its reaction act, as a fraction of the offset from A's to B's.
-// They act at one point, so that angular momentum stays: halfway, or at the anchor of the only body that moves.
+// The point at which a point lock's impulse and its reaction act, as a fraction of the offset from A's anchor to B's.
+// Both act at the same point, which conserves angular momentum: halfway, or at the anchor of the only dynamic body.
 template <int N>
 FULCRUM_FORCE_INLINE Wide<N> ImpulsePointFraction(uint32_t fixedA, uint32_t fixedB) {
     Wide<N> share(0.5f);
@@ -161,7 +36,7 @@ FULCRUM_FORCE_INLINE Wide<N> ImpulsePointFraction(uint32_t fixedA, uint32_t fixe
     return share;
 }
 
-// Of a kinematic body the solver keeps no displacement: it is its velocity times the time.
+// The solver stores no displacement of kinematic bodies: it is velocity times time.
 template <int N>
 FULCRUM_FORCE_INLINE void AddKinematicMotion(Twist<Wide<N>>& displacement, const Twist<Wide<N>>& velocity,
                                              uint32_t kinematic, float elapsed) {
@@ -178,15 +53,15 @@ FULCRUM_FORCE_INLINE Vec3<Real> Zero() {
     return Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
 }
 
-// The normal orthogonalized against the axis, of length 1: as the axis turns, it turns no more than necessary.
+// The normal orthogonalized against the axis and normalized, so that it rotates with the axis without twist.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> Straightened(const Vec3<Real>& normal, const Vec3<Real>& axis) {
     const Vec3<Real> flat = normal - axis * Dot<Real>(axis, normal);
     return flat * (Real(1.0f) / Sqrt(Max(Dot<Real>(flat, flat), Real(1e-12f))));
 }
 
-// The locks' own impulses with their reaction to the rows. In lanes without rows, whose reaction is +0, every bit stays
-// as it is in a batch without rows; adding that zero would turn -0 into +0.
+// The locks' own impulses plus their reaction to the rows. Lanes without rows, whose reaction is +0, stay bit-identical
+// to a batch without rows; adding that zero would turn -0 into +0.
 template <class Lambda, class Real>
 FULCRUM_FORCE_INLINE void AddReaction(Lambda& lambda, const Vec3<Real>& reaction) {
     for (int k = 0; k < lambda.size(); ++k) lambda[k] -= Real(0.0f) - reaction[k];
@@ -199,7 +74,7 @@ FULCRUM_FORCE_INLINE Quat<Real> RotationOf(const Vec3<Real>& v) {
     return {v.x() * half.x(), v.y() * half.x(), v.z() * half.x(), half.y()};
 }
 
-// The places and axes of a batch, at the start of the step or displaced.
+// Anchors and axes of a batch, at the start of the step or displaced.
 template <class Real>
 struct JointPlace {
     Vec3<Real> armA, armB, offset;
@@ -217,8 +92,8 @@ struct JointErrors {
     Vec2<Real> hinge = Vec2<Real>(Real(0.0f), Real(0.0f));
 };
 
-// Sets the parts up, hard and without bias, and returns the errors. Where joints are far apart their velocities are
-// held as if the anchors were at one place: with levers as long as the gap they would spin small bodies up.
+// Sets the parts up, hard and without bias, and returns the errors. If joints are far apart, their velocity rows are
+// set up as if the anchors coincided: lever arms as long as the gap would spin up small bodies.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
@@ -254,7 +129,7 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
     return errors;
 }
 
-// Calls f(axis, index) for the axes about which the angular lock's rows act.
+// Calls f(axis, index) for the axes of the angular lock's rows.
 template <AngularLock kAngular, int N, class F>
 FULCRUM_FORCE_INLINE void VisitAngularRows(const JointBatch<N>& batch, F&& f) {
     using Real = Wide<N>;
@@ -284,7 +159,7 @@ FULCRUM_FORCE_INLINE auto& AngularPart(Batch& batch) {
     else return batch.rotation;
 }
 
-// After SetUpParts: what couples the two locks.
+// After SetUpParts: the coupling of the two locks.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
     using Real = Wide<N>;
@@ -345,7 +220,7 @@ FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
     }
 }
 
-// Impulses of the locks, in the parts' rows.
+// Impulses of the locks, one component per row of the parts.
 template <class Real>
 struct LockImpulses {
     Vec3<Real> linear = Zero<Real>(), angular = Zero<Real>();
@@ -400,7 +275,7 @@ FULCRUM_FORCE_INLINE Vec3<Real> Widened(const Rows& rows, Real zero) {
     else return Vec3<Real>(rows.x(), rows.y(), zero);
 }
 
-// What the locks see of a motion: L v.
+// L v: the velocities of the locks' rows.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> LockMotion(JointBatch<N>& batch, const Twist<Wide<N>>& a,
                                                       const Twist<Wide<N>>& b) {
@@ -427,8 +302,8 @@ FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a,
     if constexpr (kLinear != LinearLock::None) add(LinearPart<kLinear>(batch), x.linear);
 }
 
-// The rows' errors and directions after the bodies moved on. Displacements are counted in pieces: a direction
-// that stayed behind would come to act against the locks.
+// Updates the rows' errors and directions after the bodies moved. Errors are integrated incrementally with the rotated
+// directions: a direction that is not rotated would eventually act against the locks.
 template <int N>
 FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -471,16 +346,16 @@ FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a
     }
 }
 
-// The line between the anchors, where they are apart; else as it was.
+// The line between the anchors, if they are apart; else the previous direction.
 template <int N>
-FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>& row,
-                                        const JointPlace<Wide<N>>& place) {
+FULCRUM_FORCE_INLINE void RotateRadialRow(const JointBatch<N>& batch, JointRows<N>& row,
+                                          const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
     const Real squared = Dot<Real>(place.offset, place.offset), one(1.0f);
     const auto turns = (row.radial > Real(0.5f)) & (squared > Real(1e-10f));
     const Real inverse = one / Sqrt(Select(turns, squared, one));
     Vec3<Real> n = place.offset * inverse;
-    // Rows that keep the distance down point the other way.
+    // Rows of an upper limit of the distance have the opposite sign.
     const RowJacobian<Real>& before = row.part.GetJacobian();
     const Real sign = Select(Dot<Real>(n, before.b.linear) < Real(0.0f), -one, one);
     n = n * sign;
@@ -495,7 +370,8 @@ FULCRUM_FORCE_INLINE void TurnRadialRow(const JointBatch<N>& batch, JointRows<N>
     row.error = Select(turns, row.startError + sign * (squared * inverse - start), row.error);
 }
 
-// After the locks were set up: responses and masses of the rows, and the reaction of the locks to their impulses.
+// After the set-up of the locks: responses and effective masses of the rows, and the reaction of the locks to their
+// impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     using Real = Wide<N>;
@@ -521,7 +397,8 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     }
 }
 
-// After it: bias and softness of the rows for velocity iterations, and for relaxing passes, which push nothing.
+// After SetUpRows: bias and softness of the rows for velocity iterations, and for relax iterations, which do not
+// correct errors.
 template <int N>
 FULCRUM_FORCE_INLINE void SetRowPush(JointBatch<N>& batch, const JointSolveSettings& settings) {
     using Real = Wide<N>;
@@ -529,7 +406,7 @@ FULCRUM_FORCE_INLINE void SetRowPush(JointBatch<N>& batch, const JointSolveSetti
         JointRows<N>& row = batch.rows[i];
         const RowSoftness<Real>&closed = row.softness, &open = row.openSoftness;
         Real push = Clamp(row.pushRate * row.error, -row.mostPush, row.mostPush);
-        // Springs push in any case: it is their force.
+        // Springs keep their bias in any case: it is their force.
         if (!settings.pushes) push = Select(row.mostPush < Real(JointRow::kUnlimited), Real(0.0f), push);
         push = push - closed.massScale * row.speed;
         const Real gap = open.massScale * (row.error * row.gapRate);
@@ -546,82 +423,6 @@ FULCRUM_FORCE_INLINE void SetRowRelax(JointBatch<N>& batch) {
         const Real &massScale = row.openSoftness.massScale, zero(0.0f);
         row.part.SetBias(massScale * (Max(row.error, zero) * row.gapRate - row.speed), {massScale, zero});
     }
-}
-
-// Joints are far apart where a distance asks for more than this part of the fastest push, or for 5 cm in a substep, and
-// stay so until all but a fiftieth of it is gone, and as much of their angles: the push of the last decimeter would
-// leave energy behind. Joints that are pulled along by others are far apart from a fifth on.
-inline float FarPush(const JointSolveSettings& settings) {
-    constexpr float kFarPart = 0.5f, kFarWay = 0.05f;  // m
-    return std::fmin(kFarPart, kFarWay * settings.inverseDt / settings.maxPushSpeed);
-}
-inline constexpr float kNearPart = 0.02f, kFollowPart = 0.2f;
-
-// JointRecord::wasPulled. What is far apart notes for how many seconds it has been no more distant, too.
-inline constexpr float kWasFar = 1.0f, kFollowed = 0.5f;
-
-// JointRecord::secondsOfTeleport after this step.
-template <class Real>
-FULCRUM_FORCE_INLINE Real SecondsLeft(const Real& before, const JointSolveSettings& settings) {
-    return Max(before - Real(settings.dt), Real(0.0f));
-}
-
-// Since when a joint that is far apart has not been distant, s, if it is not now. A pull ends after as long as it could
-// move by 100 m or turn by 100 rad in: what is still apart then is kept apart, by a pile on it, say, and would jitter.
-template <class Real, class Mask>
-FULCRUM_FORCE_INLINE Real SecondsNear(const Real& wasPulled, const Mask& isDistant,
-                                      const JointSolveSettings& settings) {
-    return Select(isDistant, Real(0.0f), Max(wasPulled - Real(kWasFar), Real(0.0f)) + Real(settings.dt));
-}
-inline float LongestNear(const JointSolveSettings& settings) { return 100.0f / settings.maxPushSpeed; }
-
-// By lanes, as parts of the fastest push.
-template <class Real>
-FULCRUM_FORCE_INLINE Real FarPush(const Real& wasPulled, const JointSolveSettings& settings) {
-    const float far = FarPush(settings);
-    const Real following = Select(wasPulled >= Real(kFollowed), Real(kFollowPart * far), Real(far));
-    return Select(wasPulled >= Real(kWasFar), Real(kNearPart * far), following);
-}
-
-// Which lanes are pulled along at more than a trifle.
-template <class Real>
-FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b,
-                                  const JointSolveSettings& settings) {
-    const Real fast(kNearPart * settings.maxPushSpeed);
-    const auto isPulled = [&](const Twist<Real>& v) {
-        return Dot<Real>(v.linear, v.linear) + Dot<Real>(v.angular, v.angular) > fast * fast;
-    };
-    return Select(isPulled(a) | isPulled(b), Real(kFollowed), before);
-}
-
-// How fast joints that are far apart are pulled: as fast as any, and from afar so much faster that all are there within
-// some seconds. That adds no energy, since pseudo-velocities are not part of the velocities.
-template <class Real>
-FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings& settings) {
-    constexpr float kMost = 3.0f, kPerSecond = 0.75f;
-    const Real most =
-        Clamp(Abs(error) * Real(kPerSecond), Real(settings.maxPushSpeed), Real(kMost * settings.maxPushSpeed));
-    return Clamp(Real(error * Real(settings.pushRate)), -most, most);
-}
-
-// m/s, rad/s: of pushes beyond it so much is left in the velocities that the impulses of their substep turn with the
-// joint before they are relaxed. What is pushed along one direction and relaxed along another, that has turned
-// meanwhile, keeps the difference: a slider whose bodies were 2 rad apart gained 2 kJ. In the seconds after a teleport
-// alone: of joints that a pile tears at, what one gains by that no other has seen.
-inline constexpr float kFastPush = 1.0f;
-
-// Of lanes whose fastest push, m/s or rad/s, this was in the last velocity iterations.
-template <class Batch, class Real>
-FULCRUM_FORCE_INLINE auto IsPushedFast(const Batch& batch, const Real& fastest) {
-    return (fastest > Real(kFastPush)) & (batch.secondsOfTeleport > Real(0.0f));
-}
-
-// Adds what the turning of a substep is to change of a velocity in the next one at once, of these lanes.
-template <int N>
-inline void AddAtOnce(const WideMask<N>& lanes, Vec3<Wide<N>>& turned, Vec3<Wide<N>>& velocity) {
-    using Real = Wide<N>;
-    velocity += ZeroUnless<Real>(lanes, turned);
-    for (int k = 0; k < 3; ++k) turned[k] = Select(lanes, Real(0.0f), Real(turned[k]));
 }
 
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -644,7 +445,8 @@ FULCRUM_FORCE_INLINE WideMask<N> IsPushedFast(const JointBatch<N>& batch) {
     return IsPushedFast(batch, fastest);
 }
 
-// The push that the next velocity iterations give; to locks that are far apart none, but a pull.
+// Sets the error correction of the next velocity iterations. Locks that are far apart get a pull (pseudo-velocity)
+// instead.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors,
                                  const JointSolveSettings& settings) {
@@ -673,7 +475,7 @@ FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>
     SetRowPush(batch, settings);
 }
 
-// squared: m2 or rad2, by lanes, of which the first `count` are joints with these indices.
+// squared: m2 or rad2, by lane; the first `count` lanes are the joints with these indices.
 template <int N>
 inline void NoteLargest(const uint32_t (&joints)[N], int count, const Wide<N>& squared, float& largest,
                         uint32_t& joint) {

@@ -14,8 +14,8 @@ using Vector6 = JointTreeBlock::Vector6;
 using Matrix6 = JointTreeBlock::Matrix6;
 using Batch = JointBatch<kLanes>;
 constexpr uint32_t kNone = JointTreeSlot::kNone;
-constexpr double kAnchorCompliance = 1e-5;  // of that of its body
-constexpr double kSmallestPivot = 1e-13;    // of the diagonal: below it there is nothing but rounding
+constexpr double kAnchorCompliance = 1e-5;  // relative to the compliance of its body
+constexpr double kSmallestPivot = 1e-13;    // relative to the diagonal: smaller pivots are rounding errors
 
 Vector ToDouble(const float (&v)[3]) {
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
@@ -94,7 +94,7 @@ void AddImpulses(Batch& batch, uint32_t lane, const Vector6& impulses) {
     });
 }
 
-// Rows for a motion about the center of mass become those for the same motion about `reference`.
+// Transforms rows for motions about the center of mass to rows for motions about `reference`.
 void MoveRows(Matrix6& rows, int count, const Vector& reference) {
     for (int i = 0; i < count; ++i) {
         const Vector by = reference.cross(Vector(rows(i, 0), rows(i, 1), rows(i, 2)));
@@ -189,7 +189,7 @@ Mat3<double> TimesCross(const Sym3<double>& m, const Vector& r) {
     return {y * r.z() - z * r.y(), z * r.x() - x * r.z(), x * r.y() - y * r.x()};
 }
 
-// Adds a mass that sits at a point of the body: `linear` at `arm` from the reference point.
+// Adds a point mass of the body: `linear` at `arm` from the reference point.
 void AddAt(ArticulatedMass& to, const Sym3<double>& linear, const Vector& arm) {
     to.linear.xx += linear.xx;
     to.linear.yy += linear.yy;
@@ -210,7 +210,7 @@ void AddAt(ArticulatedMass& to, const Sym3<double>& linear, const Vector& arm) {
     to.angular.yz -= arm.z() * p.z.x() - arm.x() * p.z.z();
 }
 
-// Of a body alone, about a point `reference` from its center of mass.
+// The mass of a single body about a point that is `reference` from its center of mass.
 ArticulatedMass MassOf(const BodyMass& body, const Vector& reference) {
     const float* i = body.inverseInertia;
     Sym3<double> inverse;
@@ -279,7 +279,7 @@ Matrix6 ToMatrix6(const ArticulatedMass& mass) {
 
 // ---- Slots ----
 
-// Velocity of the body's point that is `arm` from its center of mass.
+// Velocity of the body's point at `arm` from its center of mass.
 Vector VelocityAt(const BodyState& state, const Vector& arm) {
     return ToDouble(state.linearVelocity) + ToDouble(state.angularVelocity).cross(arm);
 }
@@ -287,7 +287,7 @@ Vector6 VelocityOf(const BodyState& state, const Vector& reference) {
     return ToSix({VelocityAt(state, reference), ToDouble(state.angularVelocity)});
 }
 
-// A ball joint's velocities are those of B less those of A.
+// A ball joint's velocity is that of B minus that of A.
 double SignOf(const JointTreeSlot& slot) { return slot.isA ? -1.0 : 1.0; }
 
 void SetUpBall(JointTreeSlot& slot, const JointTreeSlot& parent, const Batch& batch) {
@@ -366,7 +366,7 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
             if (slot.block == kNone) SetUpBall(slot, parent, batch);
             else SetUpBlock(tree.blocks[slot.block], slot, parent, batch);
         }
-        if (!slot.still) slot.mass = MassOf(masses[slot.body], slot.reference);
+        if (!slot.fixed) slot.mass = MassOf(masses[slot.body], slot.reference);
     }
     for (JointTreeAnchor& anchor : tree.anchors) {
         const Rows rows = RowsOf(batches[anchor.place.batch], anchor.place.lane);
@@ -381,11 +381,11 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
     }
     for (size_t s = tree.slots.size(); s-- > 0;) {
         JointTreeSlot& slot = tree.slots[s];
-        if (slot.still) continue;
+        if (slot.fixed) continue;
         if (slot.block == kNone) {
             EliminateBall(slot.mass);
             JointTreeSlot& parent = tree.slots[slot.parent];
-            if (!parent.still) AddAt(parent.mass, slot.mass.linear, slot.parentArm);
+            if (!parent.fixed) AddAt(parent.mass, slot.mass.linear, slot.parentArm);
             continue;
         }
         JointTreeBlock& block = tree.blocks[slot.block];
@@ -393,7 +393,7 @@ void FactorizeTree(const JointTree& tree, const JointBatch<kLanes>* batches, con
         if (slot.parent == kNone) continue;
         EliminateBlock(block);
         JointTreeSlot& parent = tree.slots[slot.parent];
-        if (!parent.still) AddSquare(parent.mass, block.other, block.effectiveMass, block.rows);
+        if (!parent.fixed) AddSquare(parent.mass, block.other, block.effectiveMass, block.rows);
     }
 }
 
@@ -403,11 +403,11 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
         JointTreeSlot& slot = tree.slots[anchor.slot];
         const Batch& batch = batches[anchor.place.batch];
         const uint32_t lane = anchor.place.lane;
-        // What does not move may be kinematic.
-        const uint32_t still = anchor.isA ? batch.bodyB[lane] : batch.bodyA[lane];
+        // The side without mass may be kinematic.
+        const uint32_t fixed = anchor.isA ? batch.bodyB[lane] : batch.bodyA[lane];
         anchor.residual = relax ? Vector6(Vector6::Zero()) : Vector6(-BiasOf(batch, lane));
         anchor.residual -= Times(anchor.own, VelocityOf(states[slot.body], slot.reference), anchor.rows);
-        anchor.residual -= Times(anchor.other, VelocityOf(states[still], Vector::Zero()), anchor.rows);
+        anchor.residual -= Times(anchor.other, VelocityOf(states[fixed], Vector::Zero()), anchor.rows);
         AddTransposed(slot.load, anchor.own, Vector6(anchor.residual * anchor.stiffness), anchor.rows);
     }
     for (size_t s = tree.slots.size(); s-- > 0;) {
@@ -424,7 +424,7 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
             block.residual -= Times(block.other, VelocityOf(states[parent.body], parent.reference), block.rows);
             block.residual -= Times(block.own, change, block.rows);
             AddTransposed(parent.load, block.other, Times(block.effectiveMass, block.residual, block.rows), block.rows);
-        } else if (slot.still) {
+        } else if (slot.fixed) {
             slot.change = {Vector::Zero(), Vector::Zero()};
         } else {
             JointTreeSlot& parent = tree.slots[slot.parent];
@@ -440,7 +440,7 @@ void SolveTree(const JointTree& tree, JointBatch<kLanes>* batches, BodyState* st
         }
     }
     for (JointTreeSlot& slot : tree.slots) {
-        if (slot.still) continue;
+        if (slot.fixed) continue;
         if (slot.parent != kNone) {
             const Twist<double>& parent = tree.slots[slot.parent].change;
             Batch& batch = batches[slot.place.batch];

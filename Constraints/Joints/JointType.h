@@ -1,7 +1,7 @@
-// What kinds of joints differ in: which motions they lock, and which rows they add in a step. The joint's locks are
-// solved anew from the poses in every substep; rows keep their Jacobian for a step, or turn it with body A. A
-// user-defined constraint is a class of its own derived from JointType. Called by the Prepare stage, for different
-// joints on different threads, for one joint on one.
+// Base class of joint types: defines which motions a joint locks, and which rows it adds in a step. Locks are set up
+// from the current poses in every substep; rows keep their Jacobian for a step, or rotate it with body A. A
+// user-defined constraint is a class derived from JointType. Called by the Prepare stage, for different joints on
+// different threads, for one joint on one.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AxisControl.h>
@@ -17,13 +17,13 @@
 
 namespace fulcrum {
 
-// How the anchor of body B may move against that of body A.
+// How the anchor of body B may move relative to that of body A.
 enum class LinearLock : uint8_t {
-    None,   // anyhow
+    None,   // freely
     Line,   // along one axis that moves with A
-    Point,  // not at all
+    Point,  // not at all (ball joint)
 };
-// How body B may turn against body A.
+// How body B may rotate relative to body A.
 enum class AngularLock : uint8_t {
     None,  // anyhow
     Axis,  // about one axis
@@ -39,8 +39,8 @@ struct JointLocks {
     friend bool operator==(const JointLocks&, const JointLocks&) = default;
 };
 
-// The bodies as a step begins, world axes. Frame A is the joint's frame as it moves with body A, frame B as with body
-// B; they coincide where all is locked.
+// State of the two bodies at the start of a step, world axes. Frame A is the joint's frame fixed in body A, frame B
+// that fixed in body B; they coincide if the joint has no error and no free axis.
 struct JointPose {
     Vector3 armA, armB;  // m, from the center of mass to the anchor
     Vector3 offset;      // m, from A's anchor to B's
@@ -48,28 +48,28 @@ struct JointPose {
     Twist<float> velocityA, velocityB;                             // m/s of the centers of mass, rad/s
     float dt = 0, substepDt = 0;                                   // s
     Position anchorA = Position::Zero();                           // m, world space
-    Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();  // rad: rotation of the bodies in the step before
+    Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();  // rad: rotation of the bodies in the last step
 
-    // About how far B turned against A in the step before about an axis, rad.
+    // Approximate rotation of B relative to A about an axis in the last step, rad.
     double TurnedAbout(const Vector3& axis) const { return Dot(axis, Vector3(turnedB - turnedA)); }
 
-    // Velocity of B's anchor against the point of A that is there now, m/s.
+    // Velocity of B's anchor relative to the point of A at the same place, m/s.
     Vector3 AnchorVelocity() const {
         return velocityB.linear + Cross<float>(velocityB.angular, armB) - velocityA.linear -
                Cross<float>(velocityA.angular, Vector3(armA + offset));
     }
-    // Frame B as it will have turned against A, and in how many seconds: within the step, and no farther than rows can
-    // be linear. A row that is right there, its error put back to now, follows a turn better than one that is right at
-    // the start.
+    // Predicts frame B relative to A; also returns after how many seconds: at the end of the step, or earlier if it
+    // rotates farther than rows may be linearized. A row linearized there, with its error extrapolated back to now,
+    // follows a rotation better than one linearized at the start.
     std::pair<Quaternion, float> FrameBAhead() const {
         constexpr float kFarthest = 0.4f;  // rad
         const Vector3 w = AngularVelocity();
         const float speed = Length(w), time = speed * dt > kFarthest ? kFarthest / speed : dt;
         return {RotationFromVector(Vector3(w * time)) * frameB, time};
     }
-    Vector3 AngularVelocity() const { return velocityB.angular - velocityA.angular; }  // rad/s, of B against A
-    // Jacobians of the motion of B's anchor along the unit axis n of A, and of the rotation of B against A about
-    // `axis`; both turn with A.
+    Vector3 AngularVelocity() const { return velocityB.angular - velocityA.angular; }  // rad/s, of B relative to A
+    // Set the Jacobian to that of the motion of B's anchor along the unit axis n of A, and to that of the rotation of B
+    // relative to A about `axis`; both rotate with A.
     void SetAlong(JointRow& row, const Vector3& n) const {
         row.turnsWithA = true;
         row.about = false;
@@ -79,7 +79,7 @@ struct JointPose {
         row.turnsWithA = row.about = true;
         row.jacobian = AngleJacobian<float>(axis);
     }
-    // How fast the row's C changes now: J v.
+    // Current rate of the row's C: J v.
     float SpeedOf(const JointRow& row) const { return RelativeMotion<>(row.jacobian, velocityA, velocityB); }
 };
 
@@ -89,53 +89,53 @@ class JointType {
 public:
     virtual ~JointType() = default;
 
-    // The kind's name, for people; and what pictures show of the joint (JointDrawing.h), by default its frames alone.
+    // The type's name for display, and what to draw of the joint (JointDrawing.h), by default its frames only.
     virtual const char* Kind() const { return "custom"; }
     virtual JointDrawing Drawing() const;
 
     virtual JointLocks Locks() const { return {}; }
-    // The largest number of rows that CollectRows adds as long as neither Locks nor motor modes change; 0: it is never
-    // called.
+    // Upper bound of the rows that CollectRows adds as long as neither Locks nor motor modes change. If 0, CollectRows
+    // is never called.
     virtual uint32_t MaxRows() const { return 0; }
-    // Adds the rows of the step. A limit that cannot be reached within the step, a motor that is off: no row.
+    // Adds the rows of the step. Limits out of reach within the step and motors that are off add none.
     virtual void CollectRows(const JointPose& pose, JointRowList& rows) {
         (void)pose;
         (void)rows;
     }
 
-    // Once, when the joint is made, with the bodies as they then are (velocities and times are zero): what a type
-    // measures from there on, such as the length of its rope or the phase of its gears.
+    // Called once, when the joint is created, with the current poses (velocities and times are zero): types store
+    // reference values here, such as the length of a rope or the phase of gears.
     virtual void Start(const JointPose& pose) { (void)pose; }
-    // What the joint does along a free axis, to be read and changed between steps; null where the type has nothing
+    // Limits, motor and friction of an axis, which may be read and changed between steps; null if the type has none
     // there.
     virtual AxisControl* Control(JointAxis axis) {
         (void)axis;
         return nullptr;
     }
-    // What its limits may be.
+    // Valid ranges of its limits.
     virtual LimitBounds BoundsOf(JointAxis axis) const {
         (void)axis;
         return {};
     }
-    // Slot of the first of an axis' rows, which are in the order of ControlSlots.
+    // First slot of an axis' rows, which are in the order of ControlSlots.
     virtual uint32_t FirstSlot(JointAxis axis) const {
         (void)axis;
         return 0;
     }
-    // The orientation of frame B against frame A that position motors turn to, unit; for types that have such motors.
+    // Sets the target orientation of position motors: of frame B relative to frame A, unit. For types with such motors.
     virtual void SetTargetOrientation(const Quaternion& target) { (void)target; }
-    // Where B is along or about an axis, m or rad. Here: the way of B's anchor along the axis of frame A, and the
-    // rotation vector of frame B against A. Types that count turns, or that measure something else, say so.
+    // Position of B along or about an axis, m or rad. Default: position of B's anchor along the axis of frame A, and
+    // components of the rotation vector of frame B relative to A. Types that count revolutions or measure something
+    // else override it.
     virtual double Coordinate(JointAxis axis, const JointPose& pose) const;
-    // What the type carries from step to step besides impulses; snapshots copy these numbers.
+    // State that the type keeps from step to step besides impulses; copied by snapshots.
     virtual std::span<double> State() { return {}; }
-    // Shows the visitor what else the type is made of: what it was made with and what Start measured, without what
-    // Control gives, always in the same order. Snapshots tell by it whether a joint is still the one that they saved,
-    // and make it anew from it.
+    // Shows the visitor all other data of the type, always in the same order: settings of its creation and values
+    // measured by Start, but not what Control returns. Snapshots use it to compare and to recreate joints.
     virtual void VisitSettings(const SettingVisitor& visit) { (void)visit; }
 
-    // By slot, 0 where there was no row: impulses of the last substep, N s or N m s, and what they were on average over
-    // the step, N or N m. Written by the Store stage, as is what JointPose says of the last step.
+    // By slot, 0 if there was no row: impulses of the last substep, N s or N m s, and the average forces of the step, N
+    // or N m. Written by the Store stage, as are the rotations of the last step.
     std::array<float, JointRowList::kMaxRows> impulses{}, forces{};
     Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();
 };

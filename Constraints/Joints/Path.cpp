@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSearchesPerSegment = 16;
 
-// The curve and its normal on a segment, and their derivatives by u.
+// The curve and its normal on a segment, and their derivatives with respect to u.
 struct Curve {
     Vector3 position, first, second, normal, normalFirst;
 };
@@ -61,7 +61,8 @@ PathSample Path::Sample(double t) const {
     return s;
 }
 
-// Gauss-Legendre quadrature of |P'|, five points on each of four parts. Source: Abramowitz and Stegun, table 25.4.
+// Gauss-Legendre quadrature of |P'|, five points on each of four subintervals. Source: Abramowitz and Stegun, table
+// 25.4.
 double Path::SegmentLength(size_t segment, double u) const {
     constexpr double kPlaces[5] = {0.0, -0.5384693101056831, 0.5384693101056831, -0.9061798459386640,
                                    0.9061798459386640};
@@ -85,8 +86,8 @@ double Path::LengthAt(double t) const {
     return place.laps * Length() + before + SegmentLength(place.segment, place.u);
 }
 
-// The distance's square has the slope P' . (P - x), and that P'' . (P - x) + |P'|^2. Where this is small or negative,
-// near a center of curvature, the second term alone leads down the slope.
+// Half the squared distance has the first derivative P' . (P - x) and the second P'' . (P - x) + |P'|^2. If the second
+// is small or negative, near a center of curvature, its second term alone still gives a descent direction.
 double Path::Closest(const Vector3& point, double from) const {
     double t = Bounded(from);
     for (int i = 0; i < 16; ++i) {

@@ -1,10 +1,10 @@
 // A smooth curve through points, open or closed, with a frame along it: tangent, normal and their cross product. Made
 // by the user, shared by path joints, which sample it. Immutable: any number of threads.
 //
-//   t    parameter: the number of the segment plus how far along it, 0..segments; of a closed path any number, in laps
+//   t    parameter: segment number plus fraction along the segment, 0..segments; closed paths wrap around
 //   P    on a segment, with u = t - its number, the cubic of Hermite between points p0, p1 with derivatives m0, m1:
 //        P(u) = (2u^3 - 3u^2 + 1) p0 + (u^3 - 2u^2 + u) m0 + (3u^2 - 2u^3) p1 + (u^3 - u^2) m1
-//   T    P' / |P'|;   N  the interpolated normal without its part along T, of length 1;   B  T x N
+//   T    P' / |P'|;   N  the interpolated normal, orthogonalized against T, of length 1;   B  T x N
 //   turn rate at which the frame turns per meter, as a rotation vector: T x T_s + (B . N_s) T, with _s = d/ds = d/dt /
 //   |P'|
 #pragma once
@@ -21,10 +21,10 @@ namespace fulcrum {
 struct PathPoint {
     Vector3 position;                   // m
     Vector3 tangent;                    // m per segment: dP/dt, not zero
-    Vector3 normal = Vector3(0, 1, 0);  // not parallel to the tangent; its length counts where normals are interpolated
+    Vector3 normal = Vector3(0, 1, 0);  // not parallel to the tangent; its length is its weight in interpolation
 };
 
-// All in the path's own frame.
+// All in the path's own space.
 struct PathSample {
     Vector3 position;                   // m
     Vector3 first, second;              // dP/dt, d2P/dt2, m
@@ -34,11 +34,11 @@ struct PathSample {
 
 class Path {
 public:
-    // Two points at least. Errors: NonFinite; Degenerate: too few points, or a place where the curve stands still or
-    // the normal is along it.
+    // At least two points. Errors: NonFinite; Degenerate: too few points, or a place where the tangent vanishes or is
+    // parallel to the normal.
     static Result<std::shared_ptr<const Path>> Hermite(std::span<const PathPoint> points, bool isClosed);
-    // Through the positions, with tangents half the way from the point before to the point after (uniform Catmull-Rom);
-    // at open ends along the first and the last chord. normals: one a point, or one for all.
+    // Through the positions, with tangents half the difference of the next and previous point (uniform Catmull-Rom); at
+    // open ends along the first and last chord. normals: one per point, or one for all.
     static Result<std::shared_ptr<const Path>> CatmullRom(std::span<const Vector3> positions,
                                                           std::span<const Vector3> normals, bool isClosed);
 
@@ -47,14 +47,15 @@ public:
 
     bool IsClosed() const { return isClosed_; }
     std::span<const PathPoint> Points() const { return points_; }
-    // Segments: t of the end.
+    // t at the end of the path: the number of segments.
     double End() const { return static_cast<double>(SegmentCount()); }
     double Length() const { return lengths_.back(); }  // m
 
     PathSample Sample(double t) const;
-    // From t = 0 along the path, m; of a closed one with whole laps.
+    // Arc length from t = 0, m; on closed paths whole laps are included.
     double LengthAt(double t) const;
-    // t of a place nearest to `point`: from t = `from` by Newton's method, or of the whole path.
+    // t of a point of the path nearest to `point`: the local minimum near t = `from` by Newton's method, or the global
+    // one.
     double Closest(const Vector3& point, double from) const;
     double Closest(const Vector3& point) const;
 
@@ -74,7 +75,7 @@ private:
     double SegmentLength(size_t segment, double u) const;
 
     std::vector<PathPoint> points_;
-    std::vector<double> lengths_;  // from the start to the end of each segment, m
+    std::vector<double> lengths_;  // arc length from the start to the end of each segment, m
     bool isClosed_;
 };
 

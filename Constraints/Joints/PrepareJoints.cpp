@@ -33,7 +33,7 @@ void SetLane(RowJacobian<Wide<N>>& lanes, int lane, const RowJacobian<float>& j)
     SetLane(lanes.b.angular, lane, j.b.angular);
 }
 
-// A lane without a row.
+// Makes a lane one without a row.
 template <int N>
 void ClearLane(JointRows<N>& rows, int lane) {
     for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.earlier, &rows.lowest, &rows.highest,
@@ -44,7 +44,7 @@ void ClearLane(JointRows<N>& rows, int lane) {
     rows.slot[lane] = 0xFF;
 }
 
-// All but what depends on the mass, of a row that is pushed at the locks' rate.
+// Sets everything that does not depend on the mass, for a row whose error is corrected at the locks' rate.
 template <int N>
 void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings& s) {
     const float massScale = yields ? s.softness.massScale : 1.0f;
@@ -54,8 +54,8 @@ void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings
     rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
 }
 
-// Of a lane's row all but what depends on the effective mass: that is set up with the locks. Jacobian and impulse
-// are written beside it.
+// Sets everything of a lane's row that does not depend on the effective mass, which is set up with the locks. Jacobian
+// and impulse are written by the caller.
 template <int N>
 void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousImpulse, const JointSolveSettings& s,
               RowJacobian<Wide<N>>& jacobian, Wide<N>& impulse) {
@@ -90,8 +90,8 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     if (std::isfinite(previousImpulse)) impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
 
-// Whether a spring is stretched so far that it would speed bodies up beyond what joints are pulled at; farther than
-// locks are when far apart.
+// Whether a spring is stretched so far that it would accelerate bodies beyond the pull speed of joints; the threshold
+// is larger than that of locks that are far apart.
 template <int N>
 bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, const SpringConstants<float>& spring,
                      const JointSolveSettings& s) {
@@ -106,8 +106,8 @@ bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, 
     return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
 }
 
-// Springs: after the masses are known. They are not relaxed: their force is what they are for. Where a teleport has
-// overstretched them they are pulled as locks are. Returns whether it has.
+// Sets springs up; the masses must be known. Springs are not relaxed, since their bias is their force. Springs that a
+// teleport has overstretched are pulled like locks. Returns whether there are any.
 template <int N>
 bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row, bool wasTeleported,
                 const JointSolveSettings& s) {
@@ -115,7 +115,7 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
     if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return false;
     const float mass = rows.part.GetEffectiveMass()[lane];
     SpringConstants<float> constants = ToConstants(row.spring);
-    // As stiff as a spring can be that a substep resolves.
+    // Limited to the stiffest spring that a substep can resolve.
     if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f))
         constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
     if (wasTeleported && IsOverstretched(batch, row, lane, constants, s)) {
@@ -131,7 +131,7 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
     return false;
 }
 
-// Asks the types for their rows and spreads these over the lanes. The parts are set up.
+// Collects the rows of the types and distributes them to the lanes. The parts must be set up.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
               const ConstSolverBodies& bodies, const JointSolveSettings& settings) {
@@ -141,7 +141,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     if (batch.rowRoom == 0) return;
     JointRowList lists[N];
     for (int lane = 0; lane < batch.count; ++lane) {
-        if (types[batch.joint[lane]]->MaxRows() == 0) continue;  // it is beside others that have rows
+        if (types[batch.joint[lane]]->MaxRows() == 0) continue;  // this joint has no rows, others of the batch do
         const JointRecord& record = records[batch.joint[lane]];
         const auto velocityOf = [&](uint32_t body) {
             const BodyState& state = bodies.states[body];
@@ -198,13 +198,13 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     }
 }
 
-// Which joints are so far apart that they are pulled, see PullJoints.
+// Finds the joints that are far apart and are pulled, see PullJoints.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors,
              const Wide<N>& wasPulled, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real farPart(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
-    // Parts of the fastest push that distances and angles ask for.
+    const Real farFraction(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
+    // Correction speeds that distances and angles ask for, as fractions of the largest push speed.
     Real distance(0.0f), angle(0.0f);
     const Real rate(settings.pushRate / settings.maxPushSpeed);
     const auto note = [&](Real& push, const auto& error) {
@@ -224,10 +224,10 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
         distance = Max(distance, Select(moves, push, zero));
         angle = Max(angle, Select(moves, zero, push));
     }
-    // Angular errors alone count after a teleport only: no lever arm grows with them, and in a pile hinges bend beyond
-    // their limits. Pushed by velocities, which are relaxed in directions that have turned since, they would leave
-    // energy behind.
-    const auto isDistant = distance > farPart, isMuch = Max(distance, angle) > farPart;
+    // Angular errors alone count only after a teleport: they do not lengthen lever arms, and in a pile hinges bend
+    // beyond their limits anyway. After a teleport, correcting them by velocities, which are relaxed in rotated
+    // directions, would leave energy.
+    const auto isDistant = distance > farFraction, isMuch = Max(distance, angle) > farFraction;
     const Real near = SecondsNear(wasPulled, isDistant, settings);
     const auto isFar =
         ((distance > least) | ((angle > least) & ((wasPulled >= Real(kWasFar)) | (batch.secondsOfTeleport > zero)))) &
@@ -239,7 +239,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     batch.pullLinear = batch.pullAngular = Zero<Real>();
     SetUpParts<kLinear, kAngular>(batch, place);
     SetUpCoupling<kLinear, kAngular>(batch);
-    // No warm start: the last impulses would act with other lever arms here.
+    // No warm start: the last impulses were computed with other lever arms.
     const auto isNew = isFar & (wasPulled < Real(kFollowed));
     const auto forget = [&](auto& part) {
         auto total = part.GetTotalLambda();
@@ -248,8 +248,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     };
     if constexpr (kAngular != AngularLock::None) forget(AngularPart<kAngular>(batch));
     if constexpr (kLinear != LinearLock::None) forget(LinearPart<kLinear>(batch));
-    // Limits are pulled. Motors, springs and friction wait: along a line they would spin the bodies up by a lever
-    // as long as the gap, and what a motor spun up while a pull turns its axis would not be its own work.
+    // Limits are pulled. Motors, springs and friction are inactive: with a lever arm as long as the gap they would spin
+    // up the bodies, and a motor whose axis is rotated by the pull would gain energy that is not its work.
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const Real unlimited(JointRow::kUnlimited);
@@ -345,7 +345,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
 
 namespace {
 
-// The force and torque that impulses of the locks are, world axes: the change of velocity of a B of unit mass.
+// The force and torque of the locks' impulses, world axes: the change of velocity of a body B of unit mass and inertia.
 template <int N>
 struct Wrench {
     Vec3<Wide<N>> force = Zero<Wide<N>>(), torque = Zero<Wide<N>>();
@@ -369,7 +369,7 @@ struct Wrench {
     }
 };
 
-// The locks' own, of the last substep.
+// The locks' own impulses of the last substep.
 template <int N>
 LockImpulses<Wide<N>> OwnImpulses(const JointBatch<N>& batch) {
     using Real = Wide<N>;
@@ -382,7 +382,7 @@ LockImpulses<Wide<N>> OwnImpulses(const JointBatch<N>& batch) {
     return own;
 }
 
-// Those of all substeps, with their reaction to the rows.
+// Impulses of all substeps, including the reaction to the rows.
 template <int N>
 LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     LockImpulses<Wide<N>> sum = OwnImpulses(batch);
@@ -395,7 +395,7 @@ LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     return sum;
 }
 
-// Writes a wrench times `scale` to a row of the records, and what stands beside it.
+// Writes a wrench times `scale` to a row of the records, with the row's other two floats.
 template <int N>
 void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale,
                    const Wide<N>& wasPulled = Wide<N>(0.0f), const Wide<N>& secondsOfTeleport = Wide<N>(0.0f)) {
@@ -409,7 +409,7 @@ void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, co
     ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
 }
 
-// How far a body turned in the step, rad.
+// Rotation of a body in the step, rad.
 Vector3 TurnOf(const BodyState& state, bool kinematic, float dt) {
     Vector3 turn;
     for (int k = 0; k < 3; ++k) turn[k] = kinematic ? state.angularVelocity[k] * dt : state.deltaRotation[k];

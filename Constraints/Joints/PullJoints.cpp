@@ -1,6 +1,6 @@
-// Joints that are far apart are pulled together by pseudo-velocities (split impulses): poses move with them, velocities
-// never see them. All joints and contacts of the bodies are solved for them, too, so that what hangs on a pulled body
-// comes along, and stops at the ground. Ball joints: SolveBalls.cpp.
+// Joints that are far apart are pulled together by pseudo-velocities (split impulses), which change poses but never
+// velocities. All joints and contacts of the bodies are solved for them, too, so that connected bodies move along and
+// contacts are respected. Ball joints: SolveBalls.cpp.
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 
 namespace fulcrum {
@@ -9,7 +9,7 @@ namespace {
 
 using namespace joints;
 
-// Adds an impulse to what a row has given in this substep, within its limits. Returns what was added.
+// Adds an impulse to the row's pseudo-impulse of this substep, clamped to the row's limits. Returns the change.
 template <class Rows, class Real>
 FULCRUM_FORCE_INLINE Real AddWithinLimits(Rows& row, const Real& impulse) {
     const Real total = Clamp(Real(row.pulled + impulse), row.lowest, row.highest), added = total - row.pulled;
@@ -17,7 +17,7 @@ FULCRUM_FORCE_INLINE Real AddWithinLimits(Rows& row, const Real& impulse) {
     return added;
 }
 
-// How fast a row is pulled. Rows that couple a motion to another count it times their ratio.
+// Pull speed of a row. For rows that couple two motions by a ratio it scales with the ratio.
 template <int N>
 FULCRUM_FORCE_INLINE Wide<N> PullSpeedOf(const JointRows<N>& row, const JointSolveSettings& settings) {
     using Real = Wide<N>;
@@ -28,8 +28,8 @@ FULCRUM_FORCE_INLINE Wide<N> PullSpeedOf(const JointRows<N>& row, const JointSol
     return PullSpeed<Real>(row.error / ratio, settings) * ratio;
 }
 
-// Those of the distant lanes. They need not conserve momentum: translation acts at the centers of mass, and rotation is
-// about them, since a lever as long as the gap would make the effective mass tiny.
+// Pulls the distant lanes. This need not conserve momentum: translation acts at the centers of mass, and rotation is
+// about them, since a lever arm as long as the gap would make the effective mass tiny.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void PullDistant(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
                                    const JointSolveSettings& settings) {
@@ -79,9 +79,9 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
-// The other lanes hold what they hold: locks and limits, as in a relaxing pass, those that were far apart with what is
-// left of their pull: turned about their centers alone, their anchors would move apart by that turn, and the
-// bodies would spin up. Motors and springs have no part in pseudo-velocities.
+// Locks and limits of the other lanes resist, as in a relax iteration. Lanes that were far apart use the rest of their
+// pull as target: if bodies only rotated about their centers, their anchors would move apart, and the bodies would spin
+// up. Motors and springs do not act on pseudo-velocities.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void HoldNear(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
                                 const JointSolveSettings& settings) {

@@ -1,5 +1,5 @@
-// Shows the numbers that an object is made of to whoever copies, compares or replaces them. Called by types of joints,
-// JointType::VisitSettings; one thread.
+// Visitor that copies, compares or replaces the numbers of an object. Called by joint types, JointType::VisitSettings;
+// one thread.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/SpringSettings.h>
@@ -12,12 +12,12 @@ namespace fulcrum {
 
 class SettingVisitor {
 public:
-    // Called with each number's bytes, which it may replace. isReplacing: whether it does.
+    // Called with the bytes of each number, which it may replace. isReplacing: whether it does.
     using OnBytes = void (*)(void* context, void* bytes, size_t size);
     SettingVisitor(OnBytes onBytes, void* context, bool isReplacing)
         : onBytes_(onBytes), context_(context), isReplacing_(isReplacing) {}
 
-    // What follows from the settings is to be brought up to date afterwards.
+    // If so, the type must update everything derived from the settings afterwards.
     bool IsReplacing() const { return isReplacing_; }
 
     template <class T>

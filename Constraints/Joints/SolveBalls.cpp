@@ -16,7 +16,7 @@ FULCRUM_FORCE_INLINE Vec3<Real> Times(const Sym3<Real>& inertia, const Vec3<Real
     return inertia * v;
 }
 
-// The inverse inertias of a batch: numbers where it is round, else tensors.
+// The inverse inertias of a batch: scalars if it is round, else tensors.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE const auto& InertiaOfA(const BallBatch<N>& batch) {
     if constexpr (kRound) return batch.inverseInertiaA;
@@ -44,7 +44,7 @@ void GatherMasses(BallBatch<N>& batch, const BodyMass* masses) {
     }
 }
 
-// Adds what an impulse at the arms changes of the velocities.
+// Applies an impulse at the arms to the velocities.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
                                      const Vec3<Wide<N>>& impulse, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
@@ -55,7 +55,8 @@ FULCRUM_FORCE_INLINE void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<
     b.angular += Times<Real>(InertiaOfB<kRound>(batch), Cross<Real>(armB, impulse));
 }
 
-// The same of a change of the total impulse; NaN counts as nothing, so that one bad joint spoils no body.
+// The same for a change of the accumulated impulse; NaN counts as zero, so that one bad joint cannot spread NaN to
+// bodies.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE void Change(BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
                                  const Vec3<Wide<N>>& change, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
@@ -66,13 +67,13 @@ FULCRUM_FORCE_INLINE void Change(BallBatch<N>& batch, const Vec3<Wide<N>>& armA,
     AddImpulse<kRound>(batch, armA, armB, impulse, a, b);
 }
 
-// The arms of the joints, and the offset from the anchors of A to those of B.
+// The arms of the joints, and the offsets from the anchors of A to those of B.
 template <class Real>
 struct BallPlace {
     Vec3<Real> armA, armB, offset;
 };
 
-// Moves the arms to where impulses act: where joints are far apart, as if the anchors were at one place.
+// Moves the arms to the point at which impulses act; for joints that are far apart, as if the anchors coincided.
 template <int N>
 FULCRUM_FORCE_INLINE void MoveArmsToImpulsePoint(const BallBatch<N>& batch, BallPlace<Wide<N>>& place) {
     using Real = Wide<N>;
@@ -119,7 +120,7 @@ FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
     }
 }
 
-// Which joints are so far apart that they are pulled, see PullJoints.
+// Finds the joints that are far apart and are pulled, see PullJoints.
 template <int N>
 FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offset, const Wide<N>& wasPulled,
                                   const JointSolveSettings& settings) {
@@ -138,7 +139,7 @@ template <int N>
 FULCRUM_FORCE_INLINE void ForgetWhereNewlyFar(BallBatch<N>& batch, const Wide<N>& wasPulled) {
     using Real = Wide<N>;
     if (!batch.far) return;
-    // No warm start: the last impulses would act with other lever arms here.
+    // No warm start: the last impulses were computed with other lever arms.
     const auto isNew = (batch.isFar > Real(0.5f)) & (wasPulled < Real(kFollowed));
     for (int k = 0; k < 3; ++k) batch.impulse[k] = Select(isNew, Real(0.0f), Real(batch.impulse[k]));
 }
@@ -149,7 +150,7 @@ FULCRUM_FORCE_INLINE Vec3<Real> MotionAt(const Twist<Real>& a, const Twist<Real>
     return PointMotion(a, b, armA, armB);
 }
 
-// How far a body turned since the start of the step: see BodyState::halfTurn.
+// Rotation of a body since the start of the step: see BodyState::halfTurn.
 template <int N>
 FULCRUM_FORCE_INLINE Quat<Wide<N>> TurnOf(const Motion<N>& pose) {
     const Wide<N>(&r)[8] = pose.row;
@@ -158,7 +159,7 @@ FULCRUM_FORCE_INLINE Quat<Wide<N>> TurnOf(const Motion<N>& pose) {
     return {r[w] * sine, r[w + 1] * sine, r[w + 2] * sine, cosine};
 }
 
-// The place at the displaced poses.
+// Arms and offset at the displaced poses.
 template <int N>
 FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, BodyState* states,
                                                   const Twist<Wide<N>>& velocityA, const Twist<Wide<N>>& velocityB,
@@ -181,8 +182,8 @@ FULCRUM_FORCE_INLINE BallPlace<Wide<N>> Displaced(const BallBatch<N>& batch, Bod
     return place;
 }
 
-// Sets the joints up at the displaced poses; the turn of the impulse is left for the next substep. Returns the offsets
-// from anchors to anchors.
+// Sets the joints up at the displaced poses; the change due to the rotation of the impulse is left for the next
+// substep. Returns the offsets between the anchors.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE Vec3<Wide<N>> Follow(BallBatch<N>& batch, const SolverBodies& bodies,
                                           const Twist<Wide<N>>& velocityA, const Twist<Wide<N>>& velocityB,
@@ -387,7 +388,7 @@ void StoreJoints(const BallBatch<N>& batch, JointRecord* records, float dt, floa
     };
     write(JointRecord::kOwn, Vec3<Real>(batch.impulse * Real(1.0f / impulseScale)), Max(batch.isFar, batch.follows),
           batch.secondsOfTeleport);
-    // Nothing but the lock acts.
+    // Only the lock acts.
     const Vec3<Real> force = (batch.impulse + batch.earlier) * Real(1.0f / dt);
     write(JointRecord::kLocks, force, none, none);
     write(JointRecord::kTotal, force, none, none);

@@ -23,8 +23,8 @@ FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide
     if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.reactionLinear);
 }
 
-// The same of the rows' own, without the reaction of the locks: of those alone whose direction or mass changes within
-// the step, whatever lanes beside them do.
+// The same for the rows' impulses, without the reaction of the locks, and only in lanes whose direction or mass changes
+// within the step, independently of other lanes.
 template <int N>
 FULCRUM_FORCE_INLINE void AddTurningRows(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
@@ -36,7 +36,7 @@ FULCRUM_FORCE_INLINE void AddTurningRows(const JointBatch<N>& batch, Twist<Wide<
     }
 }
 
-// Adds the impulses of the substep that is over to the step's.
+// Adds the impulses of the finished substep to the sums of the step.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
     using Real = Wide<N>;
@@ -53,7 +53,7 @@ FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
     for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += batch.rows[i].part.GetTotalLambda();
 }
 
-// Ends a substep: what the turning of the parts in it changes of their impulses.
+// Ends a substep: computes the change of the impulses due to the rotation of the parts.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     SumImpulses<kLinear, kAngular>(batch);
@@ -65,7 +65,7 @@ FULCRUM_FORCE_INLINE void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wi
     }
 }
 
-// The same at once, of these lanes.
+// The same, applied at once, for these lanes.
 template <LinearLock kLinear, int N>
 [[gnu::noinline, gnu::cold]] void TurnAtOnce(JointBatch<N>& batch, const WideMask<N>& lanes, Twist<Wide<N>>& a,
                                              Twist<Wide<N>>& b) {
@@ -97,7 +97,7 @@ FULCRUM_FORCE_INLINE Vec2<Real> Narrowed(const Vec3<Real>& v, const Vec2<Real>&)
     return {v.x(), v.y()};
 }
 
-// Both locks as one block. A relaxing pass is hard and pushes nothing; the parts are set up that way then.
+// Both locks as one block. A relax iteration is hard and without bias; the parts are set up that way then.
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -136,8 +136,8 @@ FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twis
     }
 }
 
-// Locks of joints that are far apart, before their rows. With levers as long as the gap a row would take what the locks
-// are still to stop for its own motion, and what it does of that, which leaves the locks alone, would add energy.
+// Locks of joints that are far apart are solved before their rows: with lever arms as long as the gap, a row would
+// otherwise react to motion that the locks have yet to stop, and add energy.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void HoldFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
@@ -178,8 +178,8 @@ FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, co
     return place;
 }
 
-// Brings the parts and the rows' errors to the displaced poses; the turn of the locks' impulses is left for the next
-// substep.
+// Updates the parts and the rows' errors to the displaced poses; the change due to the rotation of the locks' impulses
+// is left for the next substep.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies,
                                               const Twist<Wide<N>>& velocityA, const Twist<Wide<N>>& velocityB,
@@ -210,7 +210,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     SetUpCoupling<kLinear, kAngular>(batch);
     if (batch.rowCount > 0) MoveRows(batch, a, b);
     if (batch.radial)
-        for (uint32_t i = 0; i < batch.rowCount; ++i) TurnRadialRow(batch, batch.rows[i], place);
+        for (uint32_t i = 0; i < batch.rowCount; ++i) RotateRadialRow(batch, batch.rows[i], place);
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
     if (turns) {
         AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
@@ -225,7 +225,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     return errors;
 }
 
-// Calls change(linear lock, angular lock, velocities of A, of B) for the batch, and writes these back.
+// Calls change(linear lock, angular lock, velocities of A, of B) for the batch and scatters the velocities back.
 template <int N, class Batch, class F>
 FULCRUM_FORCE_INLINE void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
     ChangeVelocities<N>(batch, states, [&](auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
@@ -247,7 +247,7 @@ void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
 }
 
 template <int N>
-void TurnJoints(JointBatch<N>& batch, BodyState* states) {
+void RotateJointImpulses(JointBatch<N>& batch, BodyState* states) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         Turn<linear, angular>(batch, a, b);
     });
@@ -298,7 +298,8 @@ void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const Joint
         };
         for (uint32_t i = 0; i < batch.rowCount; ++i) {
             const JointRows<N>& row = batch.rows[i];
-            // Locks and limits; those that couple a motion to another count it times their ratio, springs are forces.
+            // Corrects locks and limits, for rows that couple two motions scaled by the ratio; not springs, which are
+            // forces.
             const auto corrects =
                 (row.mostPush > zero) & (row.mostPush < Real(JointRow::kUnlimited)) & (row.error <= row.openAbove);
             row.part.SolvePosition(a, b, Select(corrects, correction(row.error), zero), one);
@@ -326,7 +327,7 @@ void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const Joint
 
 #define FULCRUM_INSTANTIATE(lanes)                                                                  \
     template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                            \
-    template void TurnJoints(JointBatch<lanes>&, BodyState*);                                       \
+    template void RotateJointImpulses(JointBatch<lanes>&, BodyState*);                              \
     template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);  \
     template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);  \
     template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&); \

@@ -2,7 +2,7 @@
 // (RowPart.h) with this Jacobian.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (hinge limits).
-//   theta  angle of body 2 against body 1 about a         a  unit axis, world space
+//   theta  angle of body 2 relative to body 1 about a         a  unit axis, world space
 //   Constraint:  C = theta - theta_min
 //   Derivative:  dC/dt = a . (w2 - w1)
 //   Jacobian:    J = [0, -a, 0, a]

@@ -1,14 +1,13 @@
-// What the parts of two and three rows share, the locks of joints: rows solved together as one block, hard or soft,
-// with their impulses and states. A part derives from it and adds its set-up, its Jacobian and the impulses along it.
-// One thread per part.
+// Base class of the parts with two and three rows (locks of joints): the rows are solved together as one block, hard or
+// soft. A derived part adds its set-up, its Jacobian and the impulses along it. One thread per part.
 //
 //   K = J M^-1 J^T                       b  bias, m/s or rad/s            C  error, m or rad
 //   A solve changes the impulses by delta lambda = -massScale K^-1 (J v + b) - impulseScale * total lambda and adds
 //   M^-1 J^T delta lambda to the velocities; (1, 0) is the hard block, which reaches J v = -b (RowSoftness.h).
 //   A position pass moves the bodies by -K^-1 baumgarte C along J.
 //
-// The part keeps its Jacobian; the masses are handed in at every call and must be those of the set-up. A block is
-// inactive where no body can move; an inactive lane changes nothing.
+// The part keeps its Jacobian; the masses are passed to every call and must be those of the set-up. A block is inactive
+// if no body can move; an inactive lane changes nothing.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/PairMotion.h>
@@ -19,7 +18,7 @@ namespace fulcrum {
 
 namespace detail {
 
-// Rows as a vector and a matrix of two or three; the parts below are written once for both.
+// Vector and symmetric matrix types of two or three rows.
 template <class Real, int kRows>
 struct BlockTypes;
 template <class Real>
@@ -52,7 +51,7 @@ inline Vec3<Real> Choose(MaskOf<Real> mask, const Vec3<Real>& a, const Vec3<Real
 
 }  // namespace detail
 
-// What a snapshot keeps of a block.
+// The state of a block that is saved and restored.
 template <class Real, int kRows>
 struct BlockState {
     using Types = detail::BlockTypes<Real, kRows>;
@@ -90,7 +89,7 @@ public:
         AddNonZero(velocity1, velocity2, mass1, mass2, totalLambda_, IsActive());
     }
 
-    // One iteration. Returns where anything was applied.
+    // One iteration. Returns the mask of lanes in which an impulse was applied.
     Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2) {
         const Rows error = Self().RelativeMotion(velocity1, velocity2) + bias_;
@@ -98,7 +97,8 @@ public:
         return AddLambda(velocity1, velocity2, mass1, mass2, SoftDelta(impulse, totalLambda_, softness_.impulseScale),
                          IsActive());
     }
-    // Its second half for a change of the impulses that was solved together with other parts: applies it where `mask`.
+    // The second half of SolveVelocity, for a change of the impulses that was solved together with other parts: applies
+    // it in the lanes of `mask`.
     FULCRUM_FORCE_INLINE Mask AddLambda(Twist<Real>& velocity1, Twist<Real>& velocity2, const InverseMass<Real>& mass1,
                                         const InverseMass<Real>& mass2, const Rows& deltaLambda, const Mask& mask) {
         const Mask applied = AddNonZero(velocity1, velocity2, mass1, mass2, deltaLambda, mask);
@@ -106,9 +106,9 @@ public:
         return applied;
     }
 
-    // One position pass: moves the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J. The
-    // softness is left out; springs have no business here, because their error is their force.
-    // error: C as the poses are now; zero where it is satisfied.
+    // One position pass: moves the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J.
+    // Ignores the softness; not for springs, whose error is their force. error: C at the current poses; zero where it
+    // is satisfied.
     Mask SolvePosition(Twist<Real>& displacement1, Twist<Real>& displacement2, const InverseMass<Real>& mass1,
                        const InverseMass<Real>& mass2, const Rows& error, Real baumgarte) const {
         const Rows lambda = effectiveMass_ * Rows(error * -baumgarte);
@@ -121,15 +121,15 @@ public:
     void AddTotalLambda(int row, int lane, double change) {
         totalLambda_[row].Set(lane, static_cast<float>(static_cast<double>(totalLambda_[row][lane]) + change));
     }
-    // K^-1 without the softness; zero where inactive. kg or kg m2.
+    // K^-1 without the softness; zero if inactive. kg or kg m2.
     const Symmetric& GetEffectiveMass() const { return effectiveMass_; }
 
     State SaveState() const { return {totalLambda_}; }
     void RestoreState(const State& state) { totalLambda_ = state.totalLambda; }
 
 protected:
-    // K. Hard and without bias until SetBias; leaves the total impulse for the warm start, but zero where the block is
-    // inactive.
+    // Takes K. The block is hard and without bias until SetBias. Keeps the total impulse for the warm start, but sets
+    // it to zero if the block is inactive.
     void SetInverseEffectiveMass(const Symmetric& inverseEffectiveMass) {
         bias_ = Types::Zero();
         softness_ = {};
@@ -140,8 +140,8 @@ protected:
 private:
     const Part& Self() const { return static_cast<const Part&>(*this); }
 
-    // Adds M^-1 J^T lambda where `mask` and lambda is not zero; NaN counts as zero, so that one bad constraint spoils
-    // no body. Returns where.
+    // Adds M^-1 J^T lambda in the lanes of `mask` with a lambda other than zero; NaN counts as zero, so that one bad
+    // constraint cannot spread NaN to bodies. Returns these lanes.
     FULCRUM_FORCE_INLINE Mask AddNonZero(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                                          const InverseMass<Real>& mass2, const Rows& lambda, const Mask& mask) const {
         const Mask applied = (Types::Size(lambda) > Real(0.0f)) & mask;

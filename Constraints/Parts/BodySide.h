@@ -1,5 +1,5 @@
-// What every constraint part shares about its two bodies: how a side moves (known at compile time), masked updates
-// of lanes. Called by the parts and by whoever sets them up. No state.
+// Shared by all constraint parts: how a body moves, if known at compile time, and masked updates of lanes. Used by the
+// parts and the code that sets them up. No state.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
@@ -8,20 +8,20 @@
 
 namespace fulcrum {
 
-// Of rows and of the rotation-Euler part; the other blocks treat every body as Dynamic, and immovable ones by zeros.
-// A side that is not Dynamic is neither read nor written where that changes nothing: Static has no velocity and no
-// mass, Kinematic has a velocity, which the row sees, and no mass.
+// Template parameter of rows and of the rotation-Euler part; the other blocks treat every body as Dynamic, with zero
+// inverse mass if it cannot move. Static: zero velocity, infinite mass; not accessed. Kinematic: its velocity is read,
+// infinite mass; not written.
 enum class BodySide : uint8_t { Static, Kinematic, Dynamic };
 
 constexpr bool HasVelocity(BodySide side) { return side != BodySide::Static; }
 constexpr bool HasMass(BodySide side) { return side == BodySide::Dynamic; }
 
-// bool for float, one truth value a lane for lanes.
+// bool for float, a mask of lanes for Wide.
 template <class Real>
 using MaskOf = decltype(Real(0.0f) < Real(0.0f));
 
-// mask ? a : +0. Subtracting it leaves every bit of a lane where the mask is false, -0 and NaN included; a product with
-// zero would not.
+// mask ? a : +0. Subtracting it keeps lanes with a false mask bit-identical, -0 and NaN included; a product with zero
+// would not.
 inline float ZeroUnless(bool mask, float a) { return mask ? a : 0.0f; }
 template <int N>
 inline Wide<N> ZeroUnless(WideMask<N> mask, Wide<N> a) {

@@ -1,5 +1,5 @@
-// What the solver reads and writes of a body: one 64-byte line, two rows of eight floats that are gathered into lanes.
-// Masses sit beside it, one row. Filled by Physics before the solve, read back after it.
+// Solver state of a body: one cache line of 64 bytes, two rows of eight floats that are gathered into lanes. Masses are
+// in a row of their own. Filled by Physics before the solve, read back after it.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/RowPlaces.h>
@@ -14,20 +14,21 @@ struct alignas(64) BodyState {
     // First row: the velocity.
     float linearVelocity[3] = {0, 0, 0};   // m/s, of the center of mass
     float angularVelocity[3] = {0, 0, 0};  // rad/s, world axes
-    float nearFixed = 0;  // of pseudo-velocities: 1 where a contact with something fixed acts, see PullContacts
-    float marks = 0;      // flags of the stages, not used by constraints
+    float nearFixed =
+        0;            // for pseudo-velocities: 1 if a contact with a static or kinematic body acts, see PullContacts
+    float marks = 0;  // flags of the stages, not used by constraints
     // Second row: change of pose since the start of the step.
     float deltaPosition[3] = {0, 0, 0};  // m
     float deltaRotation[3] = {0, 0, 0};  // rad, rotation vector in world axes
-    // sin(a / 2) / a and cos(a / 2) of the angle a = |deltaRotation|: the rotation as a quaternion is that vector times
-    // the first, and the second. Kept up to date where a joint holds the body.
+    // sin(a / 2) / a and cos(a / 2) of the angle a = |deltaRotation|: the quaternion of the rotation is (deltaRotation
+    // times the first, the second). Kept up to date for bodies with ball joints.
     float halfTurn[2] = {0.5f, 1};
 
     float* VelocityRow() { return linearVelocity; }
     float* PoseRow() { return deltaPosition; }
     const float* VelocityRow() const { return linearVelocity; }
     const float* PoseRow() const { return deltaPosition; }
-    // Places in both rows, in the first, and in the second.
+    // Indices in both rows, in the first, and in the second.
     enum Places { kLinear = 0, kAngular = 3, kNearFixed = 6, kMarks = 7, kHalfTurn = 6 };
 };
 static_assert(sizeof(BodyState) == 64);
@@ -39,11 +40,11 @@ FULCRUM_CHECK_PLACE(BodyState, deltaPosition, 1, BodyState::kLinear);
 FULCRUM_CHECK_PLACE(BodyState, deltaRotation, 1, BodyState::kAngular);
 FULCRUM_CHECK_PLACE(BodyState, halfTurn, 1, BodyState::kHalfTurn);
 
-// Zero for a body that nothing moves.
+// Zero for static and kinematic bodies.
 struct alignas(32) BodyMass {
     float inverseInertia[6] = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz, world axes, 1/(kg m2)
     float inverseMass = 0;                         // 1/kg
-    float turns = 0;                               // 1: the inertia turns with the body from substep to substep
+    float turns = 0;                               // 1: the inertia rotates with the body from substep to substep
 
     const float* Row() const { return inverseInertia; }
     enum Places { kInverseInertia = 0, kInverseMass = 6, kTurns = 7 };
@@ -57,14 +58,13 @@ FULCRUM_CHECK_PLACE(BodyMass, inverseInertia, 0, BodyMass::kInverseInertia);
 FULCRUM_CHECK_PLACE(BodyMass, inverseMass, 0, BodyMass::kInverseMass);
 FULCRUM_CHECK_PLACE(BodyMass, turns, 0, BodyMass::kTurns);
 
-// Pose of the center frame at the start of the step, the acceleration that gravity and forces give, and the body's
-// size.
+// Pose of the center frame at the start of the step, acceleration by gravity and forces, and the body's size.
 struct alignas(64) BodyPose {
     float rotation[4] = {0, 0, 0, 1};   // x y z w
     float acceleration[3] = {0, 0, 0};  // m/s2
-    uint32_t boundsChangedIn = 0;       // the step in which fat bounds of it last changed: its pairs must be checked
+    uint32_t boundsChangedIn = 0;       // the last step in which its fat bounds changed: its pairs must be checked
     double position[3] = {0, 0, 0};     // m, of the center of mass
-    // m, Shape::InnerRadius; infinite where it has none, as surfaces and planes.
+    // m, Shape::InnerRadius; infinite if it has none (surfaces, planes).
     float innerRadius = std::numeric_limits<float>::infinity();
     float spare = 0;
 
@@ -76,7 +76,7 @@ FULCRUM_CHECK_PLACE(BodyPose, rotation, 0, BodyPose::kRotation);
 FULCRUM_CHECK_PLACE(BodyPose, acceleration, 0, BodyPose::kAcceleration);
 FULCRUM_CHECK_PLACE(BodyPose, boundsChangedIn, 0, BodyPose::kNoFloat);
 
-// Linear and angular velocity, or linear and angular displacement: six numbers over one scalar or lanes.
+// Linear and angular velocity, or linear and angular displacement; Real is float or lanes.
 template <class Real>
 struct Twist {
     Vec3<Real> linear = Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));

@@ -1,6 +1,5 @@
-// Two rows that lock the motion of an anchor point along two axes, so that it can only slide along the third: sliders
-// and points on lines. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per
-// part.
+// Two rows that lock the motion of an anchor point along two axes, so that it can only slide along the third: sliders,
+// points on lines. Called by joints, which gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (slider joint).
 //   x1, x2  centers of mass             p1, p2  anchor points in world space        r1 = p1 - x1, r2 = p2 - x2
@@ -57,7 +56,7 @@ public:
         AddPointImpulse(motion1, motion2, mass1, mass2, frame_.r1PlusU, frame_.r2, impulse, applied);
     }
 
-    // As it was set up.
+    // As set up.
     const DualAxisFrame<Real>& GetFrame() const { return frame_; }
 
 private:

@@ -1,14 +1,14 @@
-// One row that ties the rotation of two bodies about axes of their own: gears. A row part (RowPart.h) with this
+// One row that couples the rotations of two bodies, each about its own axis: gears. A row part (RowPart.h) with this
 // Jacobian.
 //
 // Own derivation.
-//   a1, a2  unit axes in world space, each fixed in its body's bearing        ratio  turns of body 1 per turn of body 2
-//   theta1, theta2  angles turned about them
+//   a1, a2  unit axes in world space, each fixed in its body's bearing
+//   theta1, theta2  rotation angles about them          ratio  revolutions of body 1 per revolution of body 2
 //   Constraint:  C = theta1 + ratio theta2 - C0           (external gears turn against each other: ratio > 0)
 //   Derivative:  dC/dt = w1 . a1 + ratio w2 . a2
 //   Jacobian:    J = [0, a1, 0, ratio a2]
 //   K = J M^-1 J^T = a1 . I1^-1 a1 + ratio^2 a2 . I2^-1 a2
-// The caller supplies C: only it can count turns. The bearings, which are other parts, take the reaction.
+// The caller supplies C, because it counts the revolutions. The bearings, which are other parts, take the reaction.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/RowJacobian.h>

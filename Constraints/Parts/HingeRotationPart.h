@@ -1,8 +1,8 @@
-// Two rows that lock the rotation of two bodies but about one axis: hinges, wheels. Called by joints, which gather the
-// bodies' lanes before and scatter them after. One thread per part.
+// Two rows that lock the relative rotation of two bodies except about one axis: hinges, wheels. Called by joints, which
+// gather the bodies' lanes before and scatter them after. One thread per part.
 //
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (hinge joint);
-// the way back from large errors is our own.
+// the error measure for large angles is our own.
 //   a1      hinge axis, moving with body 1        b2, c2  axes that move with body 2; a2 = b2 x c2 is its hinge axis
 //   theta   angle between a1 and a2, 0..pi
 //   Constraint:  C = (a1 . b2, a1 . c2) theta / sin(theta)
@@ -10,9 +10,9 @@
 //                J = [0, c2, 0, -c2; 0, -b2, 0, b2]
 //   K = J M^-1 J^T = T^T (I1^-1 + I2^-1) T with T = [-c2, b2]
 // a1 x a2 theta / sin(theta), the rotation vector from a1 to a2, has C as its components along -c2 and b2 and none
-// along a2: turning by -C about those axes brings a2 back along the shortest way, from any angle. The plain dot
+// along a2: a rotation by -C about those axes aligns a2 by the shortest rotation, from any angle. The plain dot
 // products would vanish where the axes are opposite, and their Jacobian where they are perpendicular. At 180 degrees
-// every way is the shortest; C then is (pi, 0).
+// all rotations are equally short; C then is (pi, 0).
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BlockPart.h>
@@ -27,7 +27,7 @@ inline Vec2<Real> HingeError(const Vec3<Real>& axis1, const Vec3<Real>& b2, cons
     const Real sine = Sqrt(b * b + c * c);
     const Real cosine = Dot<Real>(axis1, Cross<Real>(b2, c2));
     const Real zero(0.0f), one(1.0f);
-    // Below that the squares lose their digits; either theta / sin(theta) is 1, or any direction is right.
+    // Below that the squares underflow; either theta / sin(theta) is 1, or any direction is correct.
     const MaskOf<Real> isStraight = sine < Real(1e-15f);
     const MaskOf<Real> isOpposite = isStraight & (cosine < zero);
     const Real scale = Select(isStraight, one, Atan2(sine, cosine) / Select(isStraight, one, sine));
@@ -67,7 +67,7 @@ public:
         AddAngularImpulse(motion1, motion2, mass1, mass2, impulse, applied);
     }
 
-    // World space, as they were set up.
+    // World space, as set up.
     const Vector& GetB2() const { return b2_; }
     const Vector& GetC2() const { return c2_; }
 

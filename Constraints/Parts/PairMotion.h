@@ -1,11 +1,11 @@
-// How two bodies move against each other and how impulses move them, at a common point or in rotation alone; shared by
-// the block parts, called from their solves. Sides, of rotations, as in BodySide.h. Free functions, no state.
+// Relative motion of two bodies, and the effect of impulses on them, at a common point or for rotation only; shared by
+// the block parts. Template parameters kSide as in BodySide.h. Free functions, no state.
 //
-//   r1, r2  from the centers of mass to the point at which an impulse acts on each body (the same point, where momentum
+//   r1, r2  from the centers of mass to the point at which an impulse acts on each body (the same point, if momentum
 //           is to be kept)
 //   Point:    J v = v2 + w2 x r2 - v1 - w1 x r1,  K = 1/m1 + 1/m2 + sum of [r]x I^-1 [r]x^T
 //   Angular:  J v = w2 - w1,                      K = I1^-1 + I2^-1
-// Impulses are subtracted, with zeros where `applied` is false: that leaves every bit of an inactive lane (ZeroUnless).
+// Impulses are subtracted, with zeros where `applied` is false, which keeps inactive lanes bit-identical (ZeroUnless).
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodySide.h>
@@ -78,7 +78,7 @@ inline Sym3<Real> PointInverseMass(const InverseMass<Real>& mass, const Vec3<Rea
     k.yz = xz * i.xy + xy * i.xz - yz * i.xx - xx * i.yz;
     return k;
 }
-// Of both.
+// Sum over both bodies.
 template <class Real>
 inline Sym3<Real> PointInverseMass(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2, const Vec3<Real>& r1,
                                    const Vec3<Real>& r2) {

@@ -39,7 +39,7 @@ public:
         AddPointImpulse(motion1, motion2, mass1, mass2, r1_, r2_, lambda, applied);
     }
 
-    // World space, m, as they were set up.
+    // World space, m, as set up.
     const Vector& GetArm1() const { return r1_; }
     const Vector& GetArm2() const { return r2_; }
 

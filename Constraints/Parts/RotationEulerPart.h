@@ -4,12 +4,12 @@
 // Source: D. Chappuis, "Constraints Derivation for Rigid Body Simulation in 3D" (fixed joint); the error is our own.
 //   q1, q2  rotations of the bodies     q0 = q1^-1 q2  where the constraint holds, constant
 //   d = q2 q0^-1 q1^-1                  rotation error of body 2, world space: q2 = d q1 q0
-//   Constraint:  C = rotation vector of d, by the short way, |C| <= pi
+//   Constraint:  C = rotation vector of d, the shortest, |C| <= pi
 //   Derivative:  dC/dt = w2 - w1 for small C and, for any C, for rotations about C itself
 //   Jacobian:    J = [0, -1, 0, 1]
 //   K = J M^-1 J^T = I1^-1 + I2^-1
-// C is the angle itself and not the imaginary part of d, which is half the sine of it: it leads back from 180 degrees
-// too.
+// C is the angle itself, not the imaginary part of d, which is the sine of half the angle: the correction works from
+// 180 degrees, too.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BlockPart.h>
@@ -20,7 +20,7 @@ namespace fulcrum {
 namespace detail {
 
 // The rotation with these columns, orthonormal. Source: S. W. Shepperd, "Quaternion from Rotation Matrix", 1978:
-// divides by the largest of the four components.
+// divides by the largest of the four components, for accuracy.
 inline Quaternion RotationFromColumns(const Matrix3& m) {
     const float xx = m.x.x(), yy = m.y.y(), zz = m.z.z(), trace = xx + yy + zz;
     Quaternion q;
@@ -34,21 +34,21 @@ inline Quaternion RotationFromColumns(const Matrix3& m) {
 
 }  // namespace detail
 
-// The rotation that takes the x and y axes to the given ones: unit vectors, perpendicular (y is straightened to be),
-// not parallel.
+// The rotation that maps the x and y axes to the given unit vectors, which must not be parallel; the second is
+// orthogonalized against the first.
 inline Quaternion RotationFromAxesXY(const Vector3& axisX, const Vector3& axisY) {
     const Vector3 z = Normalized(Cross(axisX, axisY));
     return detail::RotationFromColumns({axisX, Cross(z, axisX), z});
 }
 
 // q0^-1 for which frames f1 and f2, each in its body's own space, point the same way in the world: q1 f1 = q2 f2.
-// Frames in world space give it for rotations from there on.
+// With frames in world space it applies to rotations relative to the poses at that time.
 template <class Real>
 inline Quat<Real> InverseInitialOrientation(const Quat<Real>& frame1, const Quat<Real>& frame2) {
     return frame2 * frame1.Conjugate();
 }
 
-// The frame of body 2 for which the constraint holds with the bodies as they are, as a joint is made: q1 f1 = q2 f2.
+// The frame of body 2 for which the constraint holds at the current poses, q1 f1 = q2 f2; used to create joints.
 // relative: q1^-1 q2.
 inline Quaternion InitialFrame2(const Quaternion& relative, const Quaternion& frame1) {
     return Normalized(relative.Conjugate() * frame1);
@@ -61,7 +61,7 @@ inline Vec3<Real> RotationError(const Quat<Real>& rotation1, const Quat<Real>& r
     return RotationVectorOf<Real>(rotation2 * inverseInitial * rotation1.Conjugate());
 }
 
-// kSide: what is known of the bodies at compile time (BodySide.h).
+// kSide1, kSide2: how the bodies move, if known at compile time (BodySide.h).
 template <class Real, BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
 class RotationEulerPart : public BlockPart<RotationEulerPart<Real, kSide1, kSide2>, Real, 3> {
 public:

@@ -1,4 +1,4 @@
-// The Jacobian of one row, and how impulses along it move the two bodies. Free functions and plain data.
+// The Jacobian of one row, and the effect of impulses along it on the two bodies. Free functions and plain data.
 //
 //   v1, w1, v2, w2  velocities of the bodies, linear and angular        m, I  their masses and inertias
 //   Jacobian:       J = [-a, b], a and b linear and angular:  J v = b . (v2, w2) - a . (v1, w1)
@@ -45,8 +45,8 @@ FULCRUM_FORCE_INLINE RowResponse<Real> ResponseOf(const RowJacobian<Real>& j, co
     return response;
 }
 
-// Adds response times lambda where lambda is not zero; NaN counts as zero, so that one bad constraint spoils no body,
-// and lanes without an impulse keep every bit (ZeroUnless). Returns where.
+// Adds response times lambda where lambda is not zero; NaN counts as zero, so that one bad constraint cannot spread NaN
+// to bodies, and lanes without an impulse stay bit-identical (ZeroUnless). Returns the lanes in which it was added.
 template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic, class Real>
 FULCRUM_FORCE_INLINE MaskOf<Real> AddResponse(const RowResponse<Real>& response, const Real& lambda,
                                               Twist<Real>& motion1, Twist<Real>& motion2) {

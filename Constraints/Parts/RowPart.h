@@ -1,5 +1,5 @@
-// One row between two bodies, given by its Jacobian: what axis, angle, gear, rack-and-pinion and independent-axis parts
-// are (each derives its own Jacobian), and what every row of a joint is. One thread per part.
+// One constraint row between two bodies, given by its Jacobian. Axis, angle, gear, rack-and-pinion and independent-axis
+// parts are row parts, each with its own Jacobian, and so is every row of a joint. One thread per part.
 //
 //   J  Jacobian        M^-1 J^T  response (RowJacobian.h)        lambda  total impulse, N s or N m s
 //   K = J M^-1 J^T, the inverse of the effective mass
@@ -13,22 +13,22 @@
 
 namespace fulcrum {
 
-// What a snapshot, and a joint from step to step, keeps of a row.
+// The state of a row that is kept from step to step: saved to the joint and restored from it.
 template <class Real>
 struct RowState {
     Real totalLambda = Real(0.0f);
 };
 
-// Real: float, or Wide<N> for N constraints; both give the same bits. The sides are compile-time: BodySide says what a
-// static or kinematic one saves. Twists and masses of sides that are not read may be anything.
+// Real: float, or Wide<N> for N constraints; both give the same bits. kSide1, kSide2 are compile-time: see BodySide for
+// what static and kinematic sides skip; arguments that are skipped may have any value.
 template <class Real>
 class RowPart {
 public:
     using Mask = MaskOf<Real>;
     using State = RowState<Real>;
 
-    // Set-up, once per substep: Jacobian, response and effective mass, then SetBias. Leaves the total impulse for the
-    // warm start, but zero where the row is inactive.
+    // Set-up, once per substep: Jacobian, response and effective mass, then SetBias. Keeps the total impulse for the
+    // warm start, but sets it to zero if the row is inactive.
     FULCRUM_FORCE_INLINE void SetJacobian(const RowJacobian<Real>& jacobian) { jacobian_ = jacobian; }
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     FULCRUM_FORCE_INLINE void CalculateProperties(const InverseMass<Real>& mass1, const InverseMass<Real>& mass2) {
@@ -36,14 +36,15 @@ public:
         inverseEffectiveMass_ = RelativeMotion(jacobian_, response_.a, response_.b);
         SetEffectiveMass(inverseEffectiveMass_, Real(0.0f));
     }
-    // After it where locks between the two bodies react to the row's impulse: `response` is the change of velocity by a
-    // unit of impulse and their reaction to it. What the locks determine alone is left to them: inactive.
+    // Called after CalculateProperties if locks between the two bodies react to the row's impulse: `response` is the
+    // change of velocity by a unit of impulse together with their reaction. A row that is fully determined by the locks
+    // becomes inactive.
     FULCRUM_FORCE_INLINE void SetResponse(const RowResponse<Real>& response) {
         response_ = response;
         SetEffectiveMass(RelativeMotion(jacobian_, response_.a, response_.b), inverseEffectiveMass_ * Real(1e-5f));
     }
-    // scaledBias: massScale (b + beta C), m/s or rad/s; hard, the solve reaches J v = -b. The softness: that of a push
-    // (PushSoftnessOf), or a spring's (SpringSoftnessOf).
+    // scaledBias: massScale (b + beta C), m/s or rad/s; a hard row reaches J v = -b. softness: of error correction
+    // (PushSoftnessOf) or of a spring (SpringSoftnessOf).
     FULCRUM_FORCE_INLINE void SetBias(const Real& scaledBias, const RowSoftness<Real>& softness = {}) {
         softMass_ = effectiveMass_ * softness.massScale;
         biasImpulse_ = effectiveMass_ * scaledBias;
@@ -61,16 +62,17 @@ public:
         AddResponse<kSide1, kSide2>(response_, totalLambda_, velocity1, velocity2);
     }
 
-    // One iteration; the total impulse stays in [minLambda, maxLambda], N s or N m s. Returns where anything was
-    // applied.
+    // One iteration; the total impulse stays in [minLambda, maxLambda], N s or N m s. Returns the mask of lanes in
+    // which an impulse was applied.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     FULCRUM_FORCE_INLINE Mask SolveVelocity(Twist<Real>& velocity1, Twist<Real>& velocity2, const Real& minLambda,
                                             const Real& maxLambda) {
         return ApplyTotalLambda<kSide1, kSide2>(
             velocity1, velocity2, Clamp(SolveTotalLambda<kSide1, kSide2>(velocity1, velocity2), minLambda, maxLambda));
     }
-    // The two halves of it. First the total impulse that would satisfy the row, which changes nothing; then, clamped by
-    // the caller (to friction's cone, with the other row's), it is applied.
+    // The two halves of SolveVelocity. The first returns the total impulse that would satisfy the row, and changes
+    // nothing. The second applies a total impulse that the caller has clamped (to a friction cone, together with
+    // another row's).
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     FULCRUM_FORCE_INLINE Real SolveTotalLambda(const Twist<Real>& velocity1, const Twist<Real>& velocity2) const {
         const Real impulse = softMass_ * RelativeMotion<kSide1, kSide2>(jacobian_, velocity1, velocity2) + biasImpulse_;
@@ -86,7 +88,7 @@ public:
     }
 
     // One position pass: moves the bodies (displacement since the start of the step) by -K^-1 baumgarte C along J.
-    // error: C as the poses are now, m or rad; zero where it is satisfied, and for springs: their error is their force.
+    // error: C at the current poses, m or rad; zero if satisfied, and zero for springs, whose error is their force.
     template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynamic>
     Mask SolvePosition(Twist<Real>& displacement1, Twist<Real>& displacement2, const Real& error,
                        const Real& baumgarte) const {
@@ -96,7 +98,7 @@ public:
 
     const RowJacobian<Real>& GetJacobian() const { return jacobian_; }
     const RowResponse<Real>& GetResponse() const { return response_; }
-    // 1 / K without the softness; zero where inactive. kg or kg m2.
+    // 1 / K without the softness; zero if inactive. kg or kg m2.
     const Real& GetEffectiveMass() const { return effectiveMass_; }
 
     // N s or N m s.
@@ -106,7 +108,7 @@ public:
     void RestoreState(const State& state) { totalLambda_ = state.totalLambda; }
 
 private:
-    // Inactive where K is `least` or below: no body can move.
+    // Inactive if K is `least` or below: no body can move.
     FULCRUM_FORCE_INLINE void SetEffectiveMass(const Real& k, const Real& least) {
         const Mask movable = k > least;
         effectiveMass_ = Select(movable, Real(1.0f) / Select(movable, k, Real(1.0f)), Real(0.0f));
@@ -117,7 +119,7 @@ private:
     RowResponse<Real> response_;
     Real inverseEffectiveMass_ = Real(0.0f);  // K without the locks
     Real effectiveMass_ = Real(0.0f);
-    // Kept multiplied by the effective mass, which leaves one product to a solve.
+    // Premultiplied by the effective mass, which saves a product per solve.
     Real softMass_ = Real(0.0f), biasImpulse_ = Real(0.0f);
     Real impulseScale_ = Real(0.0f);
     Real totalLambda_ = Real(0.0f);

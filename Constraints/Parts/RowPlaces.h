@@ -1,5 +1,5 @@
-// Structs that lanes gather as rows of eight floats (GatherRows). Each names the places of its members in their rows in
-// an enumeration beside them, and FULCRUM_CHECK_PLACE below the struct holds the two together.
+// Helpers for structs that are gathered into lanes as rows of eight floats (GatherRows). Each struct names the indices
+// of its members in their rows by an enumeration, which FULCRUM_CHECK_PLACE below the struct checks.
 #pragma once
 
 #include <Fulcrum/Math/Matrix.h>
@@ -11,12 +11,12 @@ namespace fulcrum {
 
 inline constexpr size_t kRowFloats = 8;
 
-// A member begins at this place of this row of its struct.
+// Asserts that a member begins at this index of this row of its struct.
 #define FULCRUM_CHECK_PLACE(type, member, row, place)                                                   \
     static_assert(offsetof(type, member) == sizeof(float) * (kRowFloats * size_t(row) + size_t(place)), \
                   #member " lies at another place of its row")
 
-// Members of more than one float, from their place on.
+// Members of several floats, from their index on.
 template <int kPlace, class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> VectorAt(const Real (&row)[kRowFloats]) {
     return Vec3<Real>(row[kPlace], row[kPlace + 1], row[kPlace + 2]);

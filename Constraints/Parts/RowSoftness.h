@@ -1,5 +1,5 @@
-// How soft a row is, whatever its mass: the coefficients of the soft constraint that contacts, locks, limits and
-// springs share, and the change of impulse that follows from them. Free functions and plain data, no threads.
+// Soft constraints: the coefficients, independent of the mass, that contacts, locks, limits and springs share, and the
+// change of impulse that follows from them. Free functions and plain data, no threads.
 //
 // With K = J M^-1 J^T, C the error, h the substep, gamma the softness and b the velocity bias, a soft row solves
 //     J v + b + beta C + gamma lambda = 0,    delta lambda = -(J v + b + beta C + gamma lambda) / (K + gamma)
@@ -32,7 +32,7 @@ inline RowSoftness<Real> SoftnessOf(const Real& a) {
     return {a / (one + a), one / (one + a)};
 }
 
-// The softness that rows push errors away with, and how fast: pushRate is beta, 1/s.
+// Softness and rate of error correction: pushRate is beta, 1/s.
 struct PushSoftness {
     float pushRate;
     RowSoftness<float> softness;

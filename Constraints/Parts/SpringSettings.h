@@ -1,5 +1,5 @@
-// How soft a constraint is, as its user says it, and the constants that a row makes of that. Validated once where a
-// joint or contact is created; SpringSoftness.h turns the constants into the softness of a row. Plain data, no threads.
+// A user's spring settings of a constraint, and the constants that a row derives from them. Validated once when a joint
+// is created; SpringSoftness.h turns the constants into the softness of a row. Plain data, no threads.
 //
 // A soft row that acts alone on a mass with error x maps its velocity, once per substep of length h, as
 //     v' = (v - K x / h) / D,    x' = x + h v'
@@ -30,12 +30,12 @@
 namespace fulcrum {
 
 enum class SpringMode : uint8_t {
-    FrequencyAndDamping,  // stiffness and damping follow the mass that the row acts on
+    FrequencyAndDamping,  // stiffness and damping are derived from the row's effective mass
     StiffnessAndDamping,  // the force law F = -k x - c v
 };
 
 enum class SpringForm : uint8_t {
-    Automatic,  // as explained above
+    Automatic,  // see above
     Exact,      // the continuous oscillator wherever it has more than two steps a period (else implicit)
     Implicit,   // unconditionally stable, exact at rest, over-damped by about w h / 2
 };
@@ -53,7 +53,7 @@ struct SpringSettings {
 // Errors: NonFinite, Negative, OutOfRange, naming the field. Every field is checked, used by the mode or not.
 Status Validate(const SpringSettings& settings);
 
-// What a row needs of the settings. With K the inverse effective mass: w^2 = squaredFrequency + stiffness K and
+// The constants of a row. With K the inverse effective mass: w^2 = squaredFrequency + stiffness K and
 // 2 zeta w = decayRate + damping K; either the first or the second term of each is zero. Hard where w = 0.
 template <class Real>
 struct SpringConstants {
@@ -65,7 +65,7 @@ struct SpringConstants {
 };
 
 // From a frequency (Hz) and damping ratio, and from a stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad). All >=
-// 0. A force law is implicit unless the user asks for something else.
+// 0. A force law is implicit by default.
 template <class Real>
 inline SpringConstants<Real> FrequencyConstants(Real frequency, Real dampingRatio,
                                                 SpringForm form = SpringForm::Automatic) {
@@ -90,16 +90,6 @@ inline SpringConstants<float> ToConstants(const SpringSettings& settings) {
     if (settings.mode == SpringMode::StiffnessAndDamping)
         return StiffnessConstants(settings.stiffness, settings.damping, settings.form);
     return FrequencyConstants(settings.frequency, settings.dampingRatio, settings.form);
-}
-
-// Puts one constraint's constants into a lane, 0 <= lane < N.
-template <int N>
-inline void SetLane(SpringConstants<Wide<N>>& lanes, int lane, const SpringConstants<float>& constants) {
-    lanes.squaredFrequency.Set(lane, constants.squaredFrequency);
-    lanes.decayRate.Set(lane, constants.decayRate);
-    lanes.stiffness.Set(lane, constants.stiffness);
-    lanes.damping.Set(lane, constants.damping);
-    lanes.form.Set(lane, constants.form);
 }
 
 }  // namespace fulcrum

@@ -1,4 +1,4 @@
-// How soft a spring makes a row: so that the row alone gives the map v' = (v - Kx C / h) / D of SpringSettings.h (Kx is
+// Softness of a spring's row, such that the row alone gives the map v' = (v - Kx C / h) / D of SpringSettings.h (Kx is
 // its K). In the coefficients of RowSoftness.h,
 //     massScale = 1 - 1/D,  impulseScale = 1/D,  beta = Kx / (h (D - 1)).
 // beta is infinite where nothing damps (D = 1), so it is kept multiplied by massScale: Kx / (D h), finite whatever the
@@ -32,8 +32,8 @@ struct SpringGains {
     Real errorGain = Real(0.0f);
 };
 
-// a = zeta w h >= 0, squaredAngle = (w h)^2 > 0. Every term is a decaying exponential and a sum of what has one sign:
-// nothing overflows and nothing cancels. For automatic, D is raised until D - 1 >= K / 2.
+// a = zeta w h >= 0, squaredAngle = (w h)^2 > 0. All terms are decaying exponentials and sums of terms of one sign: no
+// overflow, no cancellation. For automatic, D is raised until D - 1 >= K / 2.
 inline SpringGains<float> ExactSpringGains(float squaredAngle, float a, bool automatic) {
     const float discriminant = squaredAngle - a * a;
     if (discriminant < 0.0f) {
@@ -71,7 +71,7 @@ inline constexpr int kLaneCount = sizeof(Real) / sizeof(float);
 
 }  // namespace detail
 
-// What a spring makes of a row: its softness, and errorRate = massScale beta, 1/s.
+// Coefficients of a spring's row: its softness, and errorRate = massScale beta, 1/s.
 template <class Real>
 struct SpringSoftness {
     RowSoftness<Real> softness;
@@ -83,7 +83,7 @@ struct SpringSoftness {
 template <class Real>
 inline SpringSoftness<Real> SpringSoftnessOf(Real dt, Real inverseEffectiveMass, const SpringConstants<Real>& spring) {
     using namespace detail;
-    // Far beyond any spring that differs from a hard row, and far from overflow.
+    // Stiffer than any spring that differs from a hard row in float precision, and far from overflow.
     const Real largest(1e18f);
     const Real one(1.0f);
     const Real squaredOmega = spring.squaredFrequency + spring.stiffness * inverseEffectiveMass;

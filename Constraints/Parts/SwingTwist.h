@@ -1,34 +1,34 @@
-// The rotation of one joint frame against another as a swing of its x axis and a twist about it, and how far both are
-// from their limits. Called by joints once a step, and by whoever fills the lanes of the swing-twist part. Free
-// functions, no state.
+// The rotation of one joint frame against another as a swing of its x axis and a twist about it, and the errors of
+// their limits. Called by joints once a step. Free functions, no state.
 //
-//   q      rotation of frame B seen from frame A, q = swing twist (twist first)        x  the twist axis, of frame A
+//   q      rotation of frame B relative to frame A, q = swing twist (twist first)      x  the twist axis, of frame A
 //   twist  about x, by tau in -pi..pi                  d = swing x    the twist axis of frame B, seen from frame A
 //   swing  about an axis e perpendicular to x, by alpha in 0..pi; phi = alpha e = (0, phi_y, phi_z)
 //   With s = sqrt(x^2 + w^2) = cos(alpha / 2) of the components of q:
 //          twist = (x, 0, 0, w) / s,      swing = (0, w y - x z, w z + x y, s^2) / s
 //
-// A limit is an error C, rad, positive where it is kept, and an axis a of length 1 with dC/dt = a . w, w the angular
-// velocity of B against A; a is seen from frame A, as everything here. Own derivation.
+// A limit is given by an error C, rad, >= 0 if satisfied, and a unit axis a with dC/dt = a . w, w the angular velocity
+// of B relative to A; a is in frame A, like everything here. Own derivation.
 //
 // Swing limits bound a region of the sphere of directions d. C is the distance on the sphere from d to its edge: it is
 // continuous everywhere, 180 degrees included, and its derivative is exactly of length 1. With D the nearest point of
-// the edge and n the unit tangent there that leads inwards, C = atan2(d . n, d . D) and a = D x n.
+// the edge and n the unit tangent vector of the sphere there that points inwards, C = atan2(d . n, d . D) and a = D x
+// n.
 //     cone      the circle alpha = c about x, so C = c - alpha, a = -e
 //     ellipse   phi_y^2 / Y^2 + phi_z^2 / Z^2 = 1. phi is the map of the sphere that keeps distances and directions
 //               from x. D is where d . dD/dt = 0 along the edge D(t), by bracketing
 //     pyramid   swing_y / swing_w between tan(minimum / 2) and tan(maximum / 2), likewise z: on the main planes these
 //               are angles. Its faces are circles through -x, so D is closed: the foot on a face, or a corner
 //     one axis free, the other limited: the circles of latitude asin(d . its direction), a band of constant width. (The
-//               edges above would pinch at 180 degrees, where the free axis leads through.)
+//               edges above would degenerate at 180 degrees, which the free axis passes through.)
 //     one axis locked, the other limited: d stays on a great circle, and lambda, its longitude there, in a range
 //     both axes locked: phi = 0, in two rows along the great circle back to x, exact from any angle
 // Twist: dtau/dt = t . w / cos(alpha / 2) with t = (x + d) / |x + d| = (s, swing_z, -swing_y), of length 1 up to 180
-// degrees. Its C is the way to the end of the range times cos(alpha / 2), with the axis t: exact at C = 0, to first
-// order elsewhere. It fades where the x axes are opposite and twist means nothing. The longitude's C is scaled alike,
-// by the cosine of latitude. Near 180 degrees t is nearly along the edge's a: a twist beyond its range and a swing
-// beyond a wide one of 150 degrees or more then push against each other, and iterations over the rows bring them back
-// slowly. Either alone comes back at once.
+// degrees. Its C is the distance to the end of the range times cos(alpha / 2), with the axis t: exact at C = 0, to
+// first order elsewhere. It vanishes where the x axes are opposite and twist is undefined. The longitude's C is scaled
+// likewise by the cosine of latitude. Near 180 degrees t is nearly along the edge's a: a twist beyond its range and a
+// swing beyond a range of 150 degrees or more then work against each other, and iterations over the rows converge
+// slowly. Either alone is corrected at once.
 #pragma once
 
 #include <Fulcrum/Math/Trigonometry.h>
@@ -40,8 +40,8 @@ namespace fulcrum {
 
 enum class SwingShape : uint8_t { Ellipse, Pyramid };
 
-// Radians, -pi <= minimum <= maximum <= pi. Locked where it is narrower than a hundredth of a degree, free where it
-// leaves out less than that of the full turn.
+// Radians, -pi <= minimum <= maximum <= pi. Locked if narrower than a hundredth of a degree, free if it excludes less
+// than that of the full circle.
 struct AngleRange {
     static constexpr float kHalfTurn = 3.14159265f;
     static constexpr float kNegligible = 1.7e-4f;
@@ -59,14 +59,14 @@ struct SwingTwistLimits {
     SwingShape shape = SwingShape::Ellipse;
 };
 
-// See above. `slot` tells the rows of one joint apart, from step to step.
+// See above. `slot` identifies a row of the joint from step to step.
 struct RotationLimit {
     enum Slot : uint8_t { SwingYMaximum, SwingYMinimum, SwingZMaximum, SwingZMinimum, TwistMaximum, TwistMinimum };
     static constexpr int kSlots = 6;
 
     float error = 0.0f;              // C, rad
     Vector3 axis = Vector3::Zero();  // a
-    Slot slot = SwingYMaximum;       // an ellipse uses the first
+    Slot slot = SwingYMaximum;       // an ellipse uses SwingYMaximum
     bool isLocked = false;           // C = 0, in the slot of the maximum; else C >= 0
 };
 
@@ -93,14 +93,14 @@ struct SwingTwist {
     float SwingZ() const { return alpha * e2; }
 };
 
-// q of length 1. At 180 degrees of swing any twist does, and it is 0.
+// q of length 1. At 180 degrees of swing the twist is undefined; it is set to 0.
 inline SwingTwist Decompose(const Quaternion& q) {
     SwingTwist r;
     const float cosineHalf = Sqrt(q.x * q.x + q.w * q.w);
     if (cosineHalf > 1e-15f) {
         const float inverse = 1.0f / cosineHalf;
         r.swing = {0.0f, (q.w * q.y - q.x * q.z) * inverse, (q.w * q.z + q.x * q.y) * inverse, cosineHalf};
-        // q and -q are the same rotation: the one with w >= 0 has the twist within half a turn.
+        // q and -q are the same rotation: the one with w >= 0 has a twist within half a revolution.
         r.twist = 2.0f * (q.w < 0.0f ? Atan2(-q.x, -q.w) : Atan2(q.x, q.w));
     } else {
         r.swing = {0.0f, q.y, q.z, 0.0f};
@@ -118,18 +118,18 @@ inline SwingTwist Decompose(const Quaternion& q) {
 
 namespace detail {
 
-// Directions as (x, py, pz) with py = -z and pz = y: where rotation about +y and +z takes x. A rotation of the
-// coordinates about x, so that cross products stay what they are.
+// Directions as (x, py, pz) with py = -z and pz = y: the directions to which rotations about +y and +z take x. This is
+// a rotation of the coordinates about x, so cross products are preserved.
 inline Vector3 ToSwingPlane(const Vector3& v) { return Vector3(v.x(), -v.z(), v.y()); }
 inline Vector3 FromSwingPlane(const Vector3& v) { return Vector3(v.x(), v.z(), -v.y()); }
 
-// The angle by whole turns nearest to the center, both rad.
+// The angle plus whole revolutions nearest to the center, both rad.
 inline float Unwrapped(float angle, float center) {
     const float turn = 2.0f * AngleRange::kHalfTurn, apart = angle - center;
     return apart > AngleRange::kHalfTurn ? angle - turn : apart < -AngleRange::kHalfTurn ? angle + turn : angle;
 }
 
-// Both ends of a range of an angle that grows by rotation about the unit axis, at the rate 1 / scale.
+// Adds both ends of the range of an angle that increases by rotation about the unit axis, at the rate 1 / scale.
 inline void AddRange(RotationLimitList& list, RotationLimit::Slot slot, float angle, float scale, const Vector3& axis,
                      const AngleRange& range) {
     const float here = Unwrapped(angle, range.Center());
@@ -143,8 +143,8 @@ struct Circle {
     Vector3 pole;
     float latitude;  // rad
 };
-// How far d is north of the circle, and the axis that takes it further. `across` is perpendicular to the pole and
-// serves where d is a pole.
+// The angular distance of d north of the circle, and the rotation axis that increases it. `across` is perpendicular to
+// the pole and is used if d is a pole.
 inline RotationLimit NorthOf(const Circle& circle, const Vector3& d, const Vector3& across) {
     RotationLimit limit;
     const Vector3 axis = Cross(d, circle.pole);
@@ -175,8 +175,8 @@ struct EllipseEdge {
 
     // The point nearest to d, whose coordinates y and z are not negative; it is in the same quadrant, t in 0..pi/2.
     Point Nearest(const Vector3& d) const {
-        // Where the ellipse bends more than the sphere, several points are nearest about them; the best of a few comes
-        // first.
+        // If the ellipse is curved more than the sphere there may be several local minima, so the search starts at the
+        // best of a few samples.
         constexpr int kSamples = 6;
         constexpr float kStep = 0.5f * AngleRange::kHalfTurn / kSamples;
         constexpr float kSine[kSamples + 1] = {0.0f, 0.25881905f, 0.5f, 0.70710678f, 0.86602540f, 0.96592583f, 1.0f};
@@ -187,7 +187,7 @@ struct EllipseEdge {
             const float cosine = Dot(d, sample(i).at);
             if (cosine > closest) best = i, closest = cosine;
         }
-        // d . D grows up to the point and falls from there: a root of its slope d . dD/dt, by the Illinois method.
+        // d . D is maximal at the point: a root of its derivative d . dD/dt, by the Illinois method.
         Point point = sample(best);
         float slope = Dot(d, point.derivative);
         const int other = slope > 0.0f ? best + 1 : best - 1;
@@ -209,17 +209,17 @@ struct EllipseEdge {
         }
         return point;
     }
-    static constexpr float kRounding = 1e-7f;  // of slopes
+    static constexpr float kRounding = 1e-7f;  // of derivatives
 };
 
 }  // namespace detail
 
-// alpha <= halfAngle, 0..pi. The axis at alpha = 0 is -y, at 180 degrees that of the swing that led there.
+// alpha <= halfAngle, 0..pi. At alpha = 0 the axis is -y, at 180 degrees it is that of the swing.
 inline RotationLimit ConeLimit(const SwingTwist& r, float halfAngle) {
     return {halfAngle - r.alpha, Vector3(0.0f, -r.e1, -r.e2), RotationLimit::SwingYMaximum, false};
 }
 
-// halfY, halfZ > 0, < pi. Its error is at least the smaller one less alpha: a joint far inside need not call this.
+// halfY, halfZ > 0, < pi. Its error is at least the smaller one less alpha: not needed for joints far inside.
 inline RotationLimit EllipseLimit(const SwingTwist& r, float halfY, float halfZ) {
     if (Abs(halfY - halfZ) < 1e-5f) return ConeLimit(r, halfY);
     const Vector3 d = detail::ToSwingPlane(r.direction);
@@ -251,13 +251,14 @@ struct Pyramid {
         return {Vector3(-angle.sine, face < 2 ? angle.cosine : 0.0f, face < 2 ? 0.0f : angle.cosine), half};
     }
     RotationLimit FaceLimit(int face, const Vector3& d) const {
-        const Vector3 across = face < 2 ? Vector3(0, 0, -1) : Vector3(0, 1, 0);  // y and z axis in these coordinates
+        const Vector3 across =
+            face < 2 ? Vector3(0, 0, -1) : Vector3(0, 1, 0);  // the y and z axes in these coordinates
         RotationLimit limit = NorthOf(Face(face), d, Vector3(-across));
         if (face % 2 == 0) limit = {-limit.error, -limit.axis, limit.slot, false};
         limit.slot = static_cast<RotationLimit::Slot>(face);
         return limit;
     }
-    // Of the points of a face's circle: whether one is between the other two faces.
+    // Whether a point of a face's circle is between the other two faces.
     bool IsOnFace(int face, const Vector3& point) const {
         const AngleRange& other = range[1 - face / 2];
         const float along = face < 2 ? point.z() : point.y(), beyond = 1.0f + point.x();
@@ -279,7 +280,7 @@ struct Pyramid {
         return Vector3(a * a - b * b - c * c, 2.0f * (a * b), 2.0f * (a * c)) * (1.0f / squared);
     }
 
-    // Whether a swing is beyond a face. By its quaternion, because all the circles meet at -x.
+    // Whether a swing is beyond a face. Tests its quaternion, because all the circles meet at -x.
     bool IsBeyond(int face, const Quaternion& swing) const {
         const SineCosine<float> half =
             SinCos(0.5f * (face % 2 == 0 ? range[face / 2].maximum : range[face / 2].minimum));
@@ -287,10 +288,10 @@ struct Pyramid {
         return face % 2 == 0 ? over > 0.0f : over < 0.0f;
     }
 
-    // The way back to the nearest point of the region from d, which is beyond some of the faces. `slot` is of the
-    // worst.
-    RotationLimit WayBack(const Vector3& d, const RotationLimit (&faces)[4], const bool (&isBeyond)[4],
-                          RotationLimit::Slot slot) const {
+    // The rotation from d, which is beyond some of the faces, to the nearest point of the region. `slot` is that of the
+    // worst face.
+    RotationLimit RotationToRegion(const Vector3& d, const RotationLimit (&faces)[4], const bool (&isBeyond)[4],
+                                   RotationLimit::Slot slot) const {
         RotationLimit best;
         best.error = -2.0f * AngleRange::kHalfTurn;
         for (int face = 0; face < 4; ++face)
@@ -300,7 +301,7 @@ struct Pyramid {
             const float sine = Length(axis), error = -Atan2(sine, Dot(d, corner));
             if (!(error > best.error)) continue;
             best.error = error;
-            // At the corner itself a face's axis serves; opposite to it, any that is perpendicular.
+            // At the corner itself the face's axis is used; opposite to it, any perpendicular axis.
             best.axis = sine > 1e-6f    ? Vector3(axis * (1.0f / sine))
                         : error > -1.0f ? faces[slot].axis
                                         : Perpendicular(d);
@@ -312,9 +313,9 @@ struct Pyramid {
 
 }  // namespace detail
 
-// Neither range locked nor free. Inside, all four faces; outside, the way back to the nearest point of the pyramid and,
-// as long as that is short, the faces that are kept, so that no corner lets out. The least error is the distance to the
-// edge.
+// Neither range locked nor free. Inside, all four faces; outside, the rotation to the nearest point of the pyramid and,
+// if that is small, the other faces, so that the swing cannot leave at a corner. The smallest error is the distance to
+// the edge.
 inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& rangeY,
                              const AngleRange& rangeZ) {
     const detail::Pyramid pyramid{{rangeY, rangeZ}};
@@ -327,17 +328,17 @@ inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const
         isBeyond[face] = pyramid.IsBeyond(face, r.swing);
         if (isBeyond[face] && (worst < 0 || faces[face].error < faces[worst].error)) worst = face;
     }
-    constexpr float kShortWay = 0.1f;  // rad; further out the circles lead elsewhere than the faces
+    constexpr float kShortAngle = 0.1f;  // rad; farther out the circles deviate from the faces
     if (worst >= 0) {
-        const RotationLimit back = pyramid.WayBack(d, faces, isBeyond, faces[worst].slot);
+        const RotationLimit back = pyramid.RotationToRegion(d, faces, isBeyond, faces[worst].slot);
         list.Add(back.slot, back.error, detail::FromSwingPlane(back.axis));
-        if (back.error < -kShortWay) return;
+        if (back.error < -kShortAngle) return;
     }
     for (int face = 0; face < 4; ++face)
         if (!isBeyond[face]) list.Add(faces[face].slot, faces[face].error, detail::FromSwingPlane(faces[face].axis));
 }
 
-// The rows that a swing's limits make: none where both axes are free, else one to four.
+// Adds the rows of a swing's limits: none if both axes are free, else one to four.
 inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const SwingTwistLimits& limits) {
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
     const Vector3& d = r.direction;
@@ -349,7 +350,7 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
         list.Add(RotationLimit::SwingZMaximum, r.SwingZ(), Vector3(e * r.e2 + h * r.e1), true);
         return;
     }
-    // Latitude towards where rotation about the axis takes x; -z for y, y for z.
+    // Latitude towards the direction to which rotation about the axis takes x; -z for y, y for z.
     const auto addBand = [&](RotationLimit::Slot slot, const Vector3& pole, const Vector3& across,
                              const AngleRange& range) {
         const RotationLimit north = detail::NorthOf({pole, 0.0f}, d, across);
@@ -359,7 +360,7 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
         if (range.minimum > -kQuarterTurn)
             list.Add(static_cast<RotationLimit::Slot>(slot + 1), north.error - range.minimum, north.axis);
     };
-    // The angle about `axis` at which d is, seen along it; d is at the height d . axis above the circle.
+    // The longitude of d about `axis`; d . axis is its height above the great circle.
     const auto addLongitude = [&](RotationLimit::Slot slot, const Vector3& axis, float sideways,
                                   const AngleRange& range) {
         if (range.IsFree()) return;
@@ -377,11 +378,11 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
     list.Add(ellipse.slot, ellipse.error, ellipse.axis);
 }
 
-// The axis about which the twist grows, at the rate 1 / cos(alpha / 2).
+// The axis about which rotation increases the twist, at the rate 1 / cos(alpha / 2).
 inline Vector3 TwistAxis(const SwingTwist& r) { return Vector3(r.swing.w, r.swing.z, -r.swing.y); }
 
-// None where the range is free, one where it is locked, else one for either end. Beyond the ends the nearer one counts,
-// by either way round.
+// No row if the range is free, one if it is locked, else one for each end. Outside the range the error is measured to
+// the nearer end.
 inline void AddTwistLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& range) {
     if (!range.IsFree()) detail::AddRange(list, RotationLimit::TwistMaximum, r.twist, r.swing.w, TwistAxis(r), range);
 }

@@ -3,10 +3,9 @@
 //
 // By elimination, K = L D L^T and K^-1 = L^-T D^-1 L^-1. Cofactors over the determinant would need one division instead
 // of three, but lose twice the digits: K of an anchor one meter beside a thin axle has eigenvalues 1, 1, 20000, and its
-// determinant drowns in the rounding of products of 20000^3.
-// A pivot that is nothing but rounding counts as a direction that no body can move in; it gets the inverse zero. What
-// is left is a generalised inverse G (K G K = K): wherever the other rows can meet J v + b = 0, they do. K = 0 has G =
-// 0.
+// determinant is lost in the rounding of products of 20000^3. A pivot within rounding error of zero counts as a
+// direction in which no body can move; its inverse is zero. The result is a generalized inverse G (K G K = K): the
+// remaining rows reach J v + b = 0 wherever possible. K = 0 has G = 0.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodySide.h>
@@ -19,7 +18,6 @@ class Vec2 {
 public:
     Vec2() = default;
     Vec2(const Real& x, const Real& y) : v_{x, y} {}
-    static Vec2 Zero() { return {Real(0.0f), Real(0.0f)}; }
 
     Real& x() { return v_[0]; }
     Real& y() { return v_[1]; }
@@ -53,8 +51,8 @@ struct Sym2 {
 
 namespace detail {
 
-// 1 / pivot. scale: the diagonal, and what was taken from it beyond that on the way; rounding leaves some units of 6e-8
-// of these.
+// 1 / pivot. scale: the diagonal, plus the magnitudes subtracted from it during elimination; its rounding error is a
+// few times 6e-8 of that.
 template <class Real>
 inline Real InversePivot(Real pivot, Real scale) {
     const MaskOf<Real> stands = pivot > scale * Real(1e-6f);
@@ -90,7 +88,7 @@ inline Sym3<Real> SymmetricInverse(const Sym3<Real>& k) {
     const Real yz = k.yz - k.xy * lxz;
     const Real dy = detail::InversePivot(k.yy - k.xy * lxy, k.yy);
     const Real lyz = yz * dy;
-    // yz is off by units of kyy and kzz, which lyz magnifies where the first two rows are nearly the same.
+    // yz has rounding errors relative to kyy and kzz, which lyz amplifies if the first two rows are nearly equal.
     const Real dz = detail::InversePivot(k.zz - k.xz * lxz - yz * lyz, k.zz + lyz * lyz * k.yy);
     const Real corner = lxy * lyz - lxz;  // of L^-1
     Sym3<Real> inverse;

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kSamePart = 2e-6, kSameError = 1e-9;
+constexpr double kSameFraction = 2e-6, kSameError = 1e-9;
 
 std::string Digits(double value) {
     if (!std::isfinite(value)) return "null";
@@ -50,7 +50,7 @@ void CompareRun(const RunRecord& run, const Json& before, Comparison& comparison
         const Json& was = errors[error.name];
         const double from = was.is_null() ? kNaN : was.get<double>(), to = error.value;
         const std::string change = name + error.name + " " + Digits(from) + " -> " + Digits(to);
-        const double tolerance = kSameError + kSamePart * std::fabs(from);
+        const double tolerance = kSameError + kSameFraction * std::fabs(from);
         const bool hadNumber = std::isfinite(from);
         if (hadNumber && !(to <= from + tolerance)) comparison.worse.push_back(change);
         else if (hadNumber ? to < from - tolerance : std::isfinite(to)) comparison.better.push_back(change);

@@ -1,5 +1,5 @@
-// Runs scenes over a grid, several runs at a time, and keeps each in a file as it ends, so that an interrupted lab goes
-// on where it was. Called by Main.cpp and the tests; starts threads of its own.
+// Runs scenes over a grid of settings, several runs at a time, and appends each finished run to a file, so that an
+// interrupted lab can be resumed. Called by Main.cpp and the tests; starts threads of its own.
 #pragma once
 
 #include <Fulcrum/PerformanceTest/Accuracy/RunRecord.h>
@@ -12,16 +12,16 @@ namespace fulcrum::accuracy {
 struct LabOptions {
     std::vector<const LabScene*> scenes;
     bool isQuick = false;
-    bool isTimedOnce = false;  // else costs are medians of five runs, where that does not take too long
+    bool isTimedOnce = false;  // else costs are medians of five runs, unless that takes too long
     int threads = 1;           // runs at a time; the engine of each has one thread
     bool resumes = false;
     std::filesystem::path folder;  // runs.jsonl is in it; created
     bool showsProgress = true;     // on stderr
 };
 
-// All runs, sorted by scene and setting, with their self errors. Resuming takes over the complete lines of runs.jsonl
-// and makes the other runs; else a file that is there becomes runs.jsonl.bak. Errors OutOfRange: the folder cannot be
-// written; the file is of another grid or another version.
+// All runs, sorted by scene and setting, with their self errors. When resuming, the complete lines of runs.jsonl are
+// kept and only missing runs are made; otherwise an existing file is renamed to runs.jsonl.bak. Errors OutOfRange: the
+// folder cannot be written; the file is of another grid or another version.
 Result<std::vector<RunRecord>> RunLab(const LabOptions& options);
 
 }  // namespace fulcrum::accuracy

@@ -1,5 +1,5 @@
-// What a scene of the lab is, and what one run of it measures. Scenes are functions in Scenes/, listed in Registry.cpp.
-// A run belongs to one thread; runs share nothing.
+// A scene of the accuracy lab, and the measurements of one run of it. Scenes are functions in Scenes/, listed in
+// Registry.cpp. A run belongs to one thread; runs share nothing.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -17,9 +17,9 @@ struct NamedValue {
     double value;
 };
 
-// What a run has cost so far.
+// Cost of a run so far.
 struct Work {
-    double seconds = 0;           // wall clock, of the steps alone
+    double seconds = 0;           // wall clock, of the steps only
     double simulatedSeconds = 0;  // of all worlds of the run
     // Sum over the steps of (contacts + joints) x substeps x (velocity + position iterations), with the contacts and
     // joints of the step's report and the system's own effort: an island under load that gets more substeps counts as
@@ -28,15 +28,16 @@ struct Work {
     uint64_t hash = 0;  // of the last poses of all worlds
 };
 
-// One run of a scene with one setting and one seed: what it is given, and what it measures.
+// One run of a scene with one setting and one seed: inputs and measurements.
 class LabRun {
 public:
     LabRun(const Setting& ofSetting, double ofParameter, bool isShort, uint64_t seed, JobSystem* ofJobs = nullptr)
         : setting(ofSetting), parameter(ofParameter), isQuick(isShort), random(seed), jobs(ofJobs) {}
 
-    // Dimensionless, >= 0: how far a result is from the closed form, over its size. The first is the scene's main one.
+    // Dimensionless, >= 0: deviation of a result from the closed form, relative to its size. The first is the scene's
+    // main error.
     void Error(const char* name, double error) { errors.push_back({name, error}); }
-    // Whatever else is worth knowing.
+    // Additional results.
     void Figure(const char* name, double value) { figures.push_back({name, value}); }
     // A dimensionless result, for the comparison with the finest setting.
     void Observe(double value) { observed.push_back(value); }
@@ -63,13 +64,13 @@ public:
 
 struct LabScene {
     const char* name;          // of the list of scenes
-    const char* variant = "";  // where several are of one kind
+    const char* variant = "";  // if there are several variants
     const char* what;          // the set-up in one line
     const char* error;         // the main error in one line
     double parameter = 0;
     Influences influences{};
     bool isExtreme = false;
-    bool isSlow = false;   // its full grid is a coarse one
+    bool isSlow = false;   // its full grid is coarse
     int seeds = 1;         // of chaotic scenes 32: the errors are medians over so many runs
     int quickSeeds = 1;    // the same with --quick
     double blowUp = 10;    // a run whose main error exceeds this has blown up

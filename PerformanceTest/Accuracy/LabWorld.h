@@ -1,5 +1,5 @@
-// A physics system of a run: times its steps, counts what they do, and checks what holds in every scene. Beside it what
-// scenes are built of. Made by the scenes; one thread.
+// The physics system of a run: times its steps, counts their work, and checks general conditions. Also helpers to build
+// scenes. Made by the scenes; one thread.
 #pragma once
 
 #include <Fulcrum/Fulcrum.h>
@@ -78,7 +78,7 @@ Settings Of(const JointSettings& between) {
     static_cast<JointSettings&>(settings) = between;
     return settings;
 }
-// A static body that touches nothing, to attach joints to.
+// A static body without contacts, to attach joints to.
 BodyId AddHook(LabWorld& world, const Position& position = {0, 0, 0});
 
 // A stack of cubes, the lowest on y = 0 above `origin`, each up to `offset` out of line.
@@ -90,7 +90,7 @@ std::vector<BodyId> AddPyramid(LabWorld& world, int base, double edge, double sp
                                double topMass = 0);
 
 // A chain along x of links of 1 kg and 1 m, which touch nothing, from a hook at the origin; ends in a ball of
-// `endMass` kg, or none. Created `stretch` times as long as its joints want it.
+// `endMass` kg, or none. Created `stretch` times as long as its rest length.
 struct Chain {
     std::vector<BodyId> bodies;
     double length = 0;  // m, from the hook to the middle of the last body

@@ -1,4 +1,4 @@
-// What one run of the lab leaves behind, and its line in runs.jsonl. Plain data and free functions, any thread.
+// The record of one run of the lab, and its line in runs.jsonl. Plain data and free functions, any thread.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -30,7 +30,7 @@ struct RunRecord {
     double selfError = kNaN;  // from the finest setting, not from the closed form; AddSelfErrors fills it
     double costRatio = kNaN;  // to the default setting's; AddCostRatios fills it
 
-    // The main one; NaN where the scene gave none.
+    // The main error; NaN if the scene reported none.
     double Error() const { return errors.empty() ? kNaN : errors[0].value; }
 };
 
@@ -43,11 +43,12 @@ nlohmann::ordered_json ToJson(const RunRecord& record);
 // Error OutOfRange: no run, or an unknown one.
 Result<RunRecord> RecordFromJson(const nlohmann::ordered_json& json);
 
-// Of one scene, in any order: the largest difference of what each observed from what the finest soft setting did. NaN
-// where there is no such, or another number of results.
+// Of one scene, in any order: sets the self errors: the largest difference of a run's observed values from those of the
+// finest soft setting. NaN if there is none, or if the number of values differs.
 void AddSelfErrors(std::vector<RunRecord>& ofScene);
 
-// Of one scene, in any order: the cost of each over that of the default setting. NaN where there is no such.
+// Of one scene, in any order: sets the cost ratios: the cost of each run relative to the default setting. NaN if there
+// is none.
 void AddCostRatios(std::vector<RunRecord>& ofScene);
 
 }  // namespace fulcrum::accuracy

@@ -1,5 +1,5 @@
-// One choice of speed against accuracy: time step, effort of the solver, and what else is compared. The grids of the
-// lab are lists of these. Plain data and free functions, any thread.
+// One setting of the speed-accuracy trade-off: time step, solver effort, and the method compared. The grids of the lab
+// are lists of these. Plain data and free functions, any thread.
 #pragma once
 
 #include <Fulcrum/Physics/Settings.h>
@@ -37,7 +37,7 @@ struct Setting {
     friend bool operator==(const Setting&, const Setting&) = default;
 };
 
-// What makes a difference to a scene: a grid leaves out what does not.
+// Which settings influence a scene: a grid skips the others.
 struct Influences {
     bool timeStep = true, contacts = false, joints = false;
 };

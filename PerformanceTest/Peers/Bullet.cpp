@@ -46,10 +46,10 @@ struct Driver final : btMotionState {
     void setWorldTransform(const btTransform&) override {}
 };
 
-// Keeps what Bullet's shapes only point to. Shapes are about their center of mass, as Bullet wants them.
+// Owns the data to which Bullet's shapes only point. Shapes are relative to their center of mass, as Bullet requires.
 class Shapes {
 public:
-    // Null: it has no counterpart here.
+    // Null if there is no counterpart in Bullet.
     btCollisionShape* Of(const Shape& shape) {
         btCollisionShape*& made = made_[&shape];
         if (!made) made = Make(shape);

@@ -1,5 +1,5 @@
-// Another engine that runs our scenes, to compare with. It builds the same world from a scene's bodies and joints, so
-// there is nothing to define twice. Used by the benchmark; one thread.
+// Another engine that runs our scenes for comparison. It builds the same world from a scene's bodies and joints. Used
+// by the benchmark; one thread.
 #pragma once
 
 #include <Fulcrum/Samples/Runner/Simulation.h>
@@ -22,9 +22,9 @@ struct Peer {
     Result<PeerFigures> (*run)(const Scene& scene, SceneInput input, int untimed, int steps, double dt);
 };
 
-// Those that were built in; ./fulcrum bench --peer NAME builds one in.
+// The peers in this build; ./fulcrum bench --peer NAME builds one.
 std::vector<const Peer*> BuiltPeers();
-// All there are.
+// All known peers.
 std::vector<std::string> PeerNames();
 
 }  // namespace fulcrum

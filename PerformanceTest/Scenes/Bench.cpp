@@ -68,7 +68,8 @@ public:
                 timed_.push_back(std::make_unique<TimedScene>(*scene, threads, options));
     }
 
-    // Rounds over all scenes: what disturbs the machine for some seconds disturbs one run of each, not all of one.
+    // Rounds over all scenes, so that a temporary disturbance of the machine affects one run of each, not all runs of
+    // one.
     Status Run() {
         std::optional<Progress> progress;
         if (options_.runs > 1 && !options_.quiet)

@@ -6,8 +6,8 @@
 namespace fulcrum {
 
 // Prints a table of times line by line, then one of accuracy, then the comparison with the baseline; writes the JSON.
-// Or prints a history. Returns the exit status: 0, 1 where a scene is worse than in the baseline, 2 for input that is
-// missing or damaged.
+// Or prints a history. Returns the exit status: 0; 1 if a scene is worse than in the baseline; 2 if input is missing or
+// damaged.
 int RunBench(const BenchOptions& options);
 
 }  // namespace fulcrum

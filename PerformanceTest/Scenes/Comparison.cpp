@@ -41,8 +41,8 @@ ComparedRun Compare(const SavedRun& now, const SavedRun& baseline, double tolera
                          .hasHashChanged = now.hash != baseline.hash,
                          .remark = SettingsRemark(now, baseline)};
     compared.verdict = JudgeRatio(compared.time, tolerance);
-    // The kernel may suffer more from other programs than the scene does. How the scene really changed lies between its
-    // relative times and the clock's: where these disagree about the direction, nothing is known.
+    // Other programs may slow the kernel down more than the scene. The real change is between that of the relative
+    // times and that of the clock: if these have opposite signs, the result is undecided.
     const bool isOpposite = compared.verdict == Verdict::Slower   ? compared.ms < compared.baselineMs
                             : compared.verdict == Verdict::Faster ? compared.ms > compared.baselineMs
                                                                   : false;

@@ -1,6 +1,6 @@
-// Work that is the same in every build, whose time says how fast the machine is at the moment: arithmetic on what is in
-// the first-level cache, and reads from memory. It has no code of the engine and none of its compiler flags. Called by
-// the benchmark before and after each run of a scene; starts threads of its own.
+// A fixed amount of work whose time tells how fast the machine currently is: arithmetic on data in the first-level
+// cache, and reads from memory. Contains no code of the engine, and does not use its compiler flags. Called by the
+// benchmark before and after each run of a scene; starts threads of its own.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace fulcrum {
 
-// Saved runs are comparable only where this is the same: one more with each change of the kernel.
+// Saved runs are comparable only if this is equal: increment with each change of the kernel.
 inline constexpr int kReferenceKernelVersion = 1;
 
 class ReferenceKernel {
@@ -25,8 +25,8 @@ private:
     std::vector<float> memory_;  // more than caches of second level hold
 };
 
-// How many units take as long as `ms`: so many in a row have that as the median of their sums, by interpolation. What
-// interrupts a step of 10 ms three times and one of 0.1 ms hardly ever thus does the same to the units. `sequences`
+// The number of units that take `ms`: the number of consecutive units whose median total time is that, interpolated. So
+// interruptions, which hit a step of 10 ms often and one of 0.1 ms hardly ever, affect the units alike. `sequences`
 // of units that followed each other; > 0 units.
 double UnitsIn(double ms, const std::vector<std::vector<double>>& sequences);
 

@@ -13,7 +13,7 @@ struct Interval {
 // > 0 samples.
 double MedianOf(std::vector<double> samples);
 
-// By which factor samples are larger than those of a baseline.
+// The factor by which samples are larger than those of a baseline.
 struct RatioEstimate {
     double ratio;
     Interval interval;
@@ -29,8 +29,8 @@ RatioEstimate CompareSamples(const std::vector<double>& samples, const std::vect
 
 enum class Verdict { Same, Faster, Slower };
 
-// Slower where the ratio is beyond the tolerance and noise does not explain that it is above 1, that is, all of the
-// interval is; faster likewise, below 1.
+// Slower if the ratio exceeds the tolerance and the whole interval is above 1, so that noise does not explain it;
+// faster likewise, below 1.
 Verdict JudgeRatio(const RatioEstimate& estimate, double tolerance);
 const char* VerdictName(Verdict verdict);
 

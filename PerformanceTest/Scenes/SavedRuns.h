@@ -13,10 +13,10 @@
 
 namespace fulcrum {
 
-// One more with each change after which older files cannot be read.
+// Increment with each change after which older files cannot be read.
 inline constexpr int kSavedRunsSchema = 1;
 
-// What a comparison needs of a scene with a number of threads.
+// The data of a scene with a number of threads that a comparison needs.
 struct SavedRun {
     std::string scene;
     int threads = 1;

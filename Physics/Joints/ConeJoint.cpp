@@ -8,7 +8,8 @@ namespace fulcrum {
 namespace {
 
 constexpr float kPi = 3.14159265f;
-// A hundredth of a degree, as in SwingTwist.h: nearer to 0 it is an axle, nearer to 180 degrees no limit.
+// A hundredth of a degree, as in SwingTwist.h: a half angle closer to 0 is a locked axis, one closer to 180 degrees no
+// limit.
 constexpr float kNarrow = 1.7e-4f;
 
 struct Swing {
@@ -53,7 +54,8 @@ void ConeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     JointRow motion;
     pose.SetAbout(motion, swing.axis);
     swing.angle -= pose.SpeedOf(motion) * time;
-    // Turning across e widens the angle too, the more so the nearer the axes are: count all of it.
+    // Rotation perpendicular to e increases the angle, too, the more the closer the axes are: use the whole angular
+    // velocity.
     const Vector3 angular = pose.AngularVelocity();
     const float across = Length(Vector3(angular - swing.axis * Dot(angular, swing.axis)));
     AddControlRows(control_, pose, motion, swing.angle, kAngularSlackSpeed + across, 0, rows);

@@ -1,5 +1,5 @@
-// A cone: B's anchor stays at A's and the x axis of B's frame stays within an angle of A's; B spins about it freely.
-// Solved with the other joints; no threads.
+// Cone joint: B's anchor stays at A's, and the x axis of B's frame stays within an angle of A's; B rotates about it
+// freely.
 //
 //   alpha       angle between the two x axes, 0..pi           e  unit axis from A's x to B's: xA cross xB / sin(alpha)
 //   Locks:      point; for a half angle of zero also rotation about y and z
@@ -12,7 +12,7 @@
 
 namespace fulcrum {
 
-// A point joint whose axes stay within an angle of each other; B spins about its axis freely.
+// A point joint whose axes stay within an angle of each other; B rotates about its axis freely.
 struct ConeJointSettings : JointSettings {
     float halfAngle = 0.785398163f;  // rad, 0..pi; pi: no limit
     SpringSettings spring{};         // of the limit
@@ -30,7 +30,7 @@ public:
     JointLocks Locks() const override;
     uint32_t MaxRows() const override { return IsAxle() || IsFree() ? 0 : MaxControlRows(control_); }
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
-    // AngularY: alpha, rad. It is no rotation about a fixed axis, so it has neither friction nor motor.
+    // AngularY: alpha, rad. Not a rotation about a fixed axis, so there is neither friction nor motor.
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     void VisitSettings(const SettingVisitor& visit) override {
         visit(control_.limits.max);

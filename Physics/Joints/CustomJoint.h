@@ -1,4 +1,4 @@
-// A joint of a type that the user derives from JointType; no threads.
+// A joint whose type the user derives from JointType.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
@@ -7,9 +7,9 @@
 
 namespace fulcrum {
 
-// A constraint of the user's own.
+// A user-defined constraint.
 struct CustomJointSettings : JointSettings {
-    Function<std::unique_ptr<JointType>()> make;  // not empty; called once a joint, gives a type
+    Function<std::unique_ptr<JointType>()> make;  // not empty; called once per joint, creates its type
 };
 MaybeError Check(const CustomJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const CustomJointSettings& settings);

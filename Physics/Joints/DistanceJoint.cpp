@@ -18,11 +18,9 @@ std::unique_ptr<JointType> MakeType(const DistanceJointSettings& s) {
 
 DistanceJoint::DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance,
                              const SpringSettings& spring)
-    : isMeasured_(!minDistance && !maxDistance) {
-    control_.limited = true;
-    control_.limits = {minDistance.value_or(0.0f), maxDistance.value_or(std::numeric_limits<float>::infinity()),
-                       spring};
-}
+    : LengthJointType(
+          {minDistance.value_or(0.0f), maxDistance.value_or(std::numeric_limits<float>::infinity()), spring},
+          !minDistance && !maxDistance) {}
 
 void DistanceJoint::Start(const JointPose& pose) {
     if (isMeasured_) control_.limits.min = control_.limits.max = Length(pose.offset);
@@ -36,10 +34,6 @@ void DistanceJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     motion.turnsWithA = false;
     const float slack = kLinearSlackSpeed + StretchSpeed(distance, Length(pose.AnchorVelocity()), pose.dt);
     AddControlRows(control_, pose, motion, distance, slack, 0, rows);
-}
-
-double DistanceJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
-    return axis == JointAxis::LinearX ? static_cast<double>(Length(pose.offset)) : JointType::Coordinate(axis, pose);
 }
 
 JointDrawing DistanceJoint::Drawing() const { return {.isRope = true}; }

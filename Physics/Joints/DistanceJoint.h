@@ -1,12 +1,11 @@
-// A rod, a rope or a spring: the distance of the two anchors stays in a range. Solved with the other joints; no
-// threads.
+// Distance joint (rod, rope or spring): the distance of the two anchors stays in a range.
 //
 //   u = p2 - p1, d = |u|, n = u / d
 //   Rows:       C = d - ..., J = [-n, -r1 x n, n, r2 x n] (LinearX)
-// Where the anchors coincide, n is x of frame A.
+// If the anchors coincide, n is x of frame A.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/Joints/LengthJointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 #include <optional>
@@ -15,33 +14,27 @@ namespace fulcrum {
 
 // The distance of the anchors stays in a range: a rod, a rope, a spring.
 struct DistanceJointSettings : JointSettings {
-    // m, 0 <= min <= max, max may be infinite. One left out: 0, infinite. Both left out: as it is when the joint is
-    // made.
+    // m, 0 <= min <= max, max may be infinite. If one is left out: 0 or infinity. If both are left out: the distance
+    // when the joint is created.
     std::optional<float> minDistance{}, maxDistance{};
-    SpringSettings spring{};  // of both ends; where min is max, of the distance itself
+    SpringSettings spring{};  // of both limits; if min is max, of the distance itself
 };
 MaybeError Check(const DistanceJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const DistanceJointSettings& settings);
 
-class DistanceJoint final : public JointType {
+class DistanceJoint final : public LengthJointType {
 public:
-    // m, 0 <= min <= max. Left out: 0 and infinite; both left out: a rod as long as the distance is when the joint is
-    // made. The spring is of both ends.
+    // m, 0 <= min <= max. If one is left out: 0 or infinity; if both: a rod as long as the distance when the joint is
+    // created. The spring is that of both limits.
     DistanceJoint(std::optional<float> minDistance, std::optional<float> maxDistance, const SpringSettings& spring);
 
     const char* Kind() const override { return "distance"; }
     JointDrawing Drawing() const override;
-    uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
-    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
-    LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
-    double Coordinate(JointAxis axis, const JointPose& pose) const override;
-    void VisitSettings(const SettingVisitor& visit) override { visit(isMeasured_); }
 
 private:
-    AxisControl control_;
-    bool isMeasured_;
+    float LengthAt(const JointPose& pose) const override { return Length(pose.offset); }
 };
 
 }  // namespace fulcrum

@@ -1,4 +1,4 @@
-// B does not move against A. Locks and nothing else; no threads.
+// Fixed joint: B does not move relative to A. Locks only.
 //   Locks:      point; all rotation
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace fulcrum {
 
-// B does not move against A.
+// B does not move relative to A.
 struct FixedJointSettings : JointSettings {};
 MaybeError Check(const FixedJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const FixedJointSettings& settings);

@@ -30,7 +30,7 @@ void GearJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     row.error = static_cast<float>(angleA + static_cast<double>(ratio_) * angleB);
 }
 
-// Pitch circles that meet between the axles; their radii are as the numbers of teeth.
+// Pitch circles that touch between the axles; the ratio of their radii is that of the numbers of teeth.
 JointDrawing GearJoint::Drawing() const {
     constexpr float kLeast = 1e-3f;  // m
     const float sum = ratio_ > 0.0f ? 1.0f + ratio_ : std::fabs(1.0f + ratio_);

@@ -1,9 +1,9 @@
-// Two gears that mesh: A and B turn about the x axes of their frames, each in a bearing that other joints make. Solved
-// with the other joints; no threads.
+// Gear joint: A and B rotate about the x axes of their frames and mesh. Other joints must hold their bearings.
 //
-//   theta1, theta2  rotation of A and of B about their axes since the joint was made     ratio  turns of A per turn of
-//   B Rows:       the gear part's, C = theta1 + ratio theta2
-// Both angles are accumulated without drift (BearingAngle.h).
+//   theta1, theta2  rotation of A and of B about their axes since the joint was created
+//   ratio           revolutions of A per revolution of B
+//   Rows:           the gear part's, C = theta1 + ratio theta2
+// Both angles are counted over any number of revolutions without drift (BearingAngle.h).
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/BearingAngle.h>
@@ -11,8 +11,8 @@
 
 namespace fulcrum {
 
-// A turns about anchor A's axis, B about anchor B's, each in a bearing that other joints make to a body at rest; their
-// teeth mesh. turns of A = -ratio turns of B.
+// A rotates about anchor A's axis, B about anchor B's; their teeth mesh. Each needs a bearing, such as a hinge to a
+// body at rest. Revolutions of A = -ratio * revolutions of B.
 struct GearJointSettings : JointSettings {
     float ratio = 1.0f;  // |ratio| in 1e-9..1e9; teeth of B / teeth of A, > 0 for external gears
 };
@@ -21,7 +21,7 @@ std::unique_ptr<JointType> MakeType(const GearJointSettings& settings);
 
 class GearJoint final : public JointType {
 public:
-    // ratio: not zero; > 0 for external gears, which turn against each other.
+    // ratio: not zero; > 0 for external gears, which rotate in opposite directions.
     explicit GearJoint(float ratio) : ratio_(ratio) {}
 
     const char* Kind() const override { return "gear"; }
@@ -41,7 +41,7 @@ private:
     BearingAngle OfB();
 
     float ratio_;
-    float distance_ = 0;  // m, of the anchors when the joint was made
+    float distance_ = 0;  // m, between the anchors when the joint was created
     std::array<double, 2 * kNumbers> state_{};
 };
 

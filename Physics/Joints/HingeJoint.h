@@ -1,7 +1,6 @@
-// A hinge: B turns against A about the x axis of the frames, with limits, motor and friction. Solved with the other
-// joints; no threads.
+// Hinge joint: B rotates relative to A about the x axis of the frames, with limits, motor and friction.
 //
-//   theta       rotation of frame B against frame A about +x, counted over any number of turns
+//   theta       rotation of frame B relative to frame A about +x, counted over any number of revolutions
 //   Locks:      point; rotation but about x
 //   Rows:       C = theta - ..., J = [0, -a, 0, a], a the hinge axis (AngularX)
 #pragma once
@@ -11,8 +10,8 @@
 
 namespace fulcrum {
 
-// B turns about the anchor's axis. The angle is the rotation of B against A about it, zero where the frames coincide,
-// counted over any number of turns as long as it has limits, a motor or friction.
+// B rotates about the anchor's axis. The angle is the rotation of B relative to A about it, zero if the frames
+// coincide; counted over any number of revolutions if it has limits, a motor or friction.
 struct HingeJointSettings : JointSettings {
     AxisControl angle{};  // rad, rad/s, N m
 };
@@ -21,7 +20,7 @@ std::unique_ptr<JointType> MakeType(const HingeJointSettings& settings);
 
 class HingeJoint final : public JointType {
 public:
-    // rad, N m. Limits may be anywhere: turns are counted from the one that is nearest to them when the joint is made.
+    // rad, N m. Limits may be any number of revolutions from zero: counting starts at the revolution nearest to them.
     explicit HingeJoint(const AxisControl& angle) : control_(angle) {}
 
     const char* Kind() const override { return "hinge"; }

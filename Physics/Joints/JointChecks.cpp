@@ -1,7 +1,10 @@
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
+#include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace fulcrum {
 
@@ -104,7 +107,7 @@ MaybeError CheckOrder(const FieldName& lowField, double low, const FieldName& hi
 MaybeError CheckSpring(const FieldName& name, const SpringSettings& spring) {
     const Status status = Validate(spring);
     if (status) return std::nullopt;
-    // Its messages begin with "spring ".
+    // The messages begin with "spring ".
     return Error{status.GetError().code, name.Text() + "." + status.GetError().message.substr(7)};
 }
 

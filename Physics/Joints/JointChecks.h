@@ -1,5 +1,5 @@
-// Checks that the kinds of joints share. Each returns an error that names the field, its value and what would be valid;
-// bodies are checked where they are known. Called when a joint is created or changed. Free functions, no threads.
+// Checks of settings shared by the kinds of joints. Each returns an error with the field's name, its value and the
+// valid range; bodies are checked by JointInterface. Called when a joint is created or changed. Free functions.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AngularControls.h>
@@ -8,8 +8,8 @@
 
 namespace fulcrum {
 
-// A field, or a part of one, as an error names it. Put together only where there is an error: settings are checked in
-// every step that drives a motor. What it is made of must outlive it.
+// The name of a field, or of a part of one, in error messages. Concatenated only if there is an error, because driving
+// a motor checks its settings in every step. The strings must outlive it.
 class FieldName {
 public:
     FieldName(const char* name) : name_(name) {}
@@ -21,27 +21,28 @@ private:
     const char* name_;
 };
 
-// Of an anchor's frame, X along its axis, in the space that it is given in.
+// Rotation of an anchor's frame, x along its axis, in the space in which it is given.
 Quaternion RotationOf(const JointAnchor& anchor);
 
-// From `low` to `high`, which may be infinite.
+// Checks that x is within `low`..`high`, which may be infinite.
 MaybeError CheckBetween(const FieldName& field, double x, double low, double high);
 MaybeError CheckOrder(const FieldName& lowField, double low, const FieldName& highField, double high);
 MaybeError CheckSpring(const FieldName& name, const SpringSettings& spring);
-// A ratio of gears and the like, of either sign. Times the largest lengths it is still a float, and so is its inverse.
+// A ratio of gears etc., of either sign. Bounded so that its product with the largest lengths, and its inverse, fit a
+// float.
 MaybeError CheckRatio(const FieldName& field, float x);
 
-// What all joints share.
+// The settings shared by all joints.
 MaybeError CheckCommon(const JointSettings& settings);
-// Of an axis; limits may be infinite where the bounds are. Allocates nothing where nothing is wrong.
+// Settings of an axis; limits may be infinite if the bounds are. Allocates nothing unless there is an error.
 MaybeError CheckControl(const FieldName& name, const AxisControl& control, const LimitBounds& bounds = {});
 
-// Rotations limited as swing and twist.
+// Rotation axes limited as swing and twist.
 MaybeError CheckSwingTwist(const std::array<const char*, 3>& names, const std::array<AxisControl, 3>& axes,
                            SwingShape shape);
 MaybeError CheckMassOverride(const FieldName& name, const MassOverride& massOverride);
 
-// Both a kind's own fields and the shared ones.
+// The fields of a kind together with the shared ones.
 template <class... Checks>
 MaybeError CheckWith(const JointSettings& settings, Checks&&... checks) {
     return FirstOf(CheckCommon(settings), std::forward<Checks>(checks)...);

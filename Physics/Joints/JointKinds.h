@@ -1,5 +1,5 @@
-// The list of the kinds of joints: each is a file of its own, with its settings, their check, its type with locks and
-// rows, its name and its drawing. The interface, the viewer and the tests know kinds from this list alone.
+// The list of the kinds of joints. Each kind is one file with its settings, their check, its type with locks and rows,
+// its name and its drawing. The interface, the viewer and the tests use this list.
 #pragma once
 
 #include <Fulcrum/Physics/Joints/ConeJoint.h>

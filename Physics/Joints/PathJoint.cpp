@@ -15,8 +15,8 @@ struct PathSlots {
     static constexpr uint32_t kAcross = 0, kAlong = 2, kRotation = 6;
 };
 
-// How far B's anchor is along the path.
-double WayOf(const Path& path, double parameter, const PathSample& at, const Vector3& local) {
+// Arc length of B's anchor along the path.
+double DistanceAlong(const Path& path, double parameter, const PathSample& at, const Vector3& local) {
     const double beyond = path.IsClosed() ? 0.0 : static_cast<double>(Dot(Vector3(local - at.position), at.tangent));
     return path.LengthAt(parameter) + beyond;
 }
@@ -64,17 +64,17 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     parameter_ = path_->Closest(local, parameter_);
     const PathSample at = path_->Sample(parameter_);
     const Vector3 away = local - at.position;
-    // Far from the path, where B is along it says nothing of how it is to turn: it turns when it is there, or bodies
-    // that turn would have the nearest place wander along the path, and that turn them elsewhere. What moves B acts on
-    // A where it is to be: with a lever as long as the gap it would whirl them about.
+    // Rotation is locked only near the path: far from it the nearest point moves along the path as bodies rotate, and
+    // would rotate them further. The force on A acts at the point of the path where B should be: a lever arm as long as
+    // the gap would spin up the bodies.
     constexpr float kNear = 0.1f;  // m
     const bool isNear = LengthSquared(away) < kNear * kNear;
     JointPose acting = pose;
     if (!isNear) acting.armA -= Rotate(pose.frameA, away);
     JointRow along;
     acting.SetAlong(along, Rotate(pose.frameA, at.tangent));
-    const double way = WayOf(*path_, parameter_, at, local);
-    AddControlRows(Bounded(), pose, along, way, kLinearSlackSpeed, PathSlots::kAlong, rows);
+    const double distance = DistanceAlong(*path_, parameter_, at, local);
+    AddControlRows(Bounded(), pose, along, distance, kLinearSlackSpeed, PathSlots::kAlong, rows);
     if (isNear && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal))
         AddRotationRows(pose, at, along, rows);
     uint32_t slot = PathSlots::kAcross;
@@ -89,8 +89,7 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
                                 JointRowList& rows) const {
     const Quaternion ofPath = RotationFromAxesXY(at.tangent, at.normal);
     const Quaternion ofB = ofPath.Conjugate() * (pose.frameA.Conjugate() * pose.frameB);
-    // What B has too much, seen from the path's frame. Free about the tangent: the turn from the one x axis to the
-    // other.
+    // Rotation error of B in the path's frame. If free about the tangent: the rotation between the x axes.
     Vector3 error;
     if (rotation_ == PathRotation::TangentAndNormal) {
         error = RotationVectorOf<float>(ofB);
@@ -98,7 +97,7 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
         const Vector3 x = ToMatrix(ofB).x;
         const float sine = std::sqrt(x.y() * x.y() + x.z() * x.z()), angle = Atan2(sine, x.x());
         const float scale = sine > 1e-6f ? angle / sine : 1.0f;
-        // Opposite: about any axis, so about the normal.
+        // Opposite axes: any perpendicular axis, so the normal.
         error = sine > 1e-6f || x.x() > 0.0f ? Vector3(0, -x.z() * scale, x.y() * scale) : Vector3(0, angle, 0);
     }
     const Vector3 axes[3] = {at.tangent, at.normal, at.binormal};
@@ -119,7 +118,7 @@ double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
     const Vector3 local = InverseRotate(pose.frameA, pose.offset);
     const double parameter = path_->Closest(local, parameter_);
-    return WayOf(*path_, parameter, path_->Sample(parameter), local);
+    return DistanceAlong(*path_, parameter, path_->Sample(parameter), local);
 }
 
 std::span<double> PathJoint::State() { return {&parameter_, 1}; }

@@ -1,8 +1,7 @@
-// B's anchor rides on a path that A's frame carries, driven or free, and B may be made to turn with the path. Solved
-// with the other joints; no threads.
+// Path joint: B's anchor stays on a path fixed in A's frame, driven or free, and B may rotate with the path.
 //
-//   P, T, N, B, turn  of the path at the place nearest to B's anchor (Path.h), world space       u = p2 - p1, e = u - P
-//   s           arc length of that place from the start of the path, m; beyond the end of an open path plus e . T
+//   P, T, N, B, turn  of the path at the point nearest to B's anchor (Path.h), world space       u = p2 - p1, e = u - P
+//   s           arc length of that point from the start of the path, m; beyond the end of an open path plus e . T
 //   Rows:       C = e . N, e . B, J = [-n, -(r1 + u) x n, n, r2 x n] with n = N, B
 //               C = s - ..., the same with n = T (LinearX)
 //               rotation: with c the rotation vector from the path's frame to B's, C = c . n, and
@@ -17,14 +16,14 @@
 namespace fulcrum {
 
 enum class PathRotation : uint8_t {
-    Free,              // B turns freely
+    Free,              // B rotates freely
     Tangent,           // the x axis of B's frame is along the path
     TangentAndNormal,  // and its y axis along the normal
-    Constant,          // B does not turn against A
+    Constant,          // B does not rotate relative to A
 };
 
-// B's anchor rides on a path that is given in the frame of A's anchor. Where B is to turn with the path, its frame
-// becomes the path's: x along the tangent, y along the normal. So give anchor B: where B is tied, and which of its axes
+// B's anchor stays on a path that is given in the frame of A's anchor. If B rotates with the path, its frame is aligned
+// with the path's: x along the tangent, y along the normal. So give anchor B: the attachment point, and which axes of B
 // these are.
 struct PathJointSettings : JointSettings {
     std::shared_ptr<const Path> path = Path::Straight(1.0f);  // not null
@@ -36,7 +35,7 @@ std::unique_ptr<JointType> MakeType(const PathJointSettings& settings);
 
 class PathJoint final : public JointType {
 public:
-    // along: m, N, from the start of the path; of a closed path, laps count.
+    // along: m, N; measured from the start of the path; on closed paths laps are counted.
     PathJoint(std::shared_ptr<const Path> path, const AxisControl& along, PathRotation rotation);
 
     const char* Kind() const override { return "path"; }

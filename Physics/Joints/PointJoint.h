@@ -1,4 +1,4 @@
-// A ball joint: B's anchor stays at A's, and B turns freely. Locks and nothing else; no threads.
+// Ball joint: B's anchor stays at A's, and B rotates freely. Locks only.
 //   Locks:      point
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace fulcrum {
 
-// B's anchor stays at A's; B turns freely.
+// B's anchor stays at A's; B rotates freely.
 struct PointJointSettings : JointSettings {};
 MaybeError Check(const PointJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const PointJointSettings& settings);

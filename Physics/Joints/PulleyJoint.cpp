@@ -24,10 +24,10 @@ std::unique_ptr<JointType> MakeType(const PulleyJointSettings& s) {
 
 PulleyJoint::PulleyJoint(const Position& fixedPointA, const Position& fixedPointB, float ratio, float minLength,
                          std::optional<float> maxLength)
-    : fixedPointA_(fixedPointA), fixedPointB_(fixedPointB), ratio_(ratio), isMeasured_(!maxLength) {
-    control_.limited = true;
-    control_.limits = {minLength, maxLength.value_or(minLength), {}};
-}
+    : LengthJointType({minLength, maxLength.value_or(minLength), {}}, !maxLength),
+      fixedPointA_(fixedPointA),
+      fixedPointB_(fixedPointB),
+      ratio_(ratio) {}
 
 std::pair<Vector3, Vector3> PulleyJoint::RopesAt(const JointPose& pose) const {
     return {(pose.anchorA - fixedPointA_).cast<float>(),
@@ -35,24 +35,21 @@ std::pair<Vector3, Vector3> PulleyJoint::RopesAt(const JointPose& pose) const {
 }
 
 void PulleyJoint::Start(const JointPose& pose) {
-    if (!isMeasured_) return;
-    const auto length = static_cast<float>(Coordinate(JointAxis::LinearX, pose));
-    control_.limits.max = std::max(length, control_.limits.min);
+    if (isMeasured_) control_.limits.max = std::max(LengthAt(pose), control_.limits.min);
 }
 
 void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const auto [ropeA, ropeB] = RopesAt(pose);
     const float lengthA = Length(ropeA), lengthB = Length(ropeB), length = lengthA + ratio_ * lengthB;
     Vector3 axisA = Normalized(ropeA, Vector3::Zero()), axisB = Normalized(ropeB, Vector3::Zero()) * ratio_;
-    // A side that is pulled in while more than that of the other is to come has nothing more to give: it would swing to
-    // and fro.
+    // A side shorter than the excess length cannot shorten further and would oscillate: only the other side acts.
     constexpr float kShort = 0.5f;  // m
     const float givesNothing = std::min(length - control_.limits.max, kShort);
     if (lengthA < givesNothing && lengthA <= ratio_ * lengthB) axisA = Vector3::Zero();
     else if (ratio_ * lengthB < givesNothing) axisB = Vector3::Zero();
     JointRow motion;
     motion.jacobian = IndependentAxisJacobian<float>({pose.armA, pose.armB, axisA, axisB});
-    // Each side swings by itself.
+    // Each side may swing independently.
     const auto stretch = [&](const Twist<float>& velocity, const Vector3& arm, float rope) {
         return StretchSpeed(rope, Length(Vector3(velocity.linear + Cross(velocity.angular, arm))), pose.dt);
     };
@@ -61,8 +58,7 @@ void PulleyJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     AddControlRows(control_, pose, motion, length, kLinearSlackSpeed + slack, 0, rows);
 }
 
-double PulleyJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
-    if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
+float PulleyJoint::LengthAt(const JointPose& pose) const {
     const auto [ropeA, ropeB] = RopesAt(pose);
     return Length(ropeA) + ratio_ * Length(ropeB);
 }

@@ -1,13 +1,13 @@
-// A rope from A over two fixed points of the world to B, with a mechanical advantage (block and tackle) of `ratio` on
-// B's side. Solved with the other joints; no threads.
+// Pulley joint: a rope from A over two fixed points of the world to B, with a mechanical advantage (block and tackle)
+// of `ratio` on B's side.
 //
 //   p1, p2  anchors of A and B      f1, f2  fixed points      n1 = (p1 - f1) / |p1 - f1|, n2 likewise
 //   l = |p1 - f1| + ratio |p2 - f2|, in minLength .. maxLength (LinearX)
 //   Rows:       C = l - minLength >= 0, maxLength - l >= 0,  l' = n1 . (v1 + w1 x r1) + ratio n2 . (v2 + w2 x r2)
-// A side of length zero has no direction and pulls nowhere.
+// A side of length zero has no direction and exerts no force.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Constraints/Joints/LengthJointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 #include <optional>
@@ -20,41 +20,36 @@ struct PulleyJointSettings : JointSettings {
     Position fixedPointB = Position::Zero();  // m, world space
     float ratio = 1.0f;                       // 1e-9..1e9
     float minLength = 0.0f;                   // m, >= 0
-    std::optional<float> maxLength{};         // m, >= minLength; left out: as it is when the joint is made
+    std::optional<float> maxLength{};         // m, >= minLength; left out: the length when the joint is created
 };
 MaybeError Check(const PulleyJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const PulleyJointSettings& settings);
 
-class PulleyJoint final : public JointType {
+class PulleyJoint final : public LengthJointType {
 public:
-    // m, world space. ratio > 0; 0 <= minLength <= maxLength; left out, maxLength is the length when the joint is made.
+    // m, world space. ratio > 0; 0 <= minLength <= maxLength; if left out, maxLength is the length when the joint is
+    // created.
     PulleyJoint(const Position& fixedPointA, const Position& fixedPointB, float ratio, float minLength,
                 std::optional<float> maxLength);
 
     const char* Kind() const override { return "pulley"; }
     JointDrawing Drawing() const override;
-    uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
-    // Of the length: the motor winds the rope.
-    AxisControl* Control(JointAxis axis) override { return axis == JointAxis::LinearX ? &control_ : nullptr; }
-    LimitBounds BoundsOf(JointAxis) const override { return {.lowest = 0.0f}; }
-    double Coordinate(JointAxis axis, const JointPose& pose) const override;
     void VisitSettings(const SettingVisitor& visit) override {
         visit(fixedPointA_);
         visit(fixedPointB_);
         visit(ratio_);
-        visit(isMeasured_);
+        LengthJointType::VisitSettings(visit);
     }
 
 private:
+    float LengthAt(const JointPose& pose) const override;
     // From the fixed points to the anchors of A and of B, m.
     std::pair<Vector3, Vector3> RopesAt(const JointPose& pose) const;
 
     Position fixedPointA_, fixedPointB_;
     float ratio_;
-    AxisControl control_;
-    bool isMeasured_;
 };
 
 }  // namespace fulcrum

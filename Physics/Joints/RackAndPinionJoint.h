@@ -1,8 +1,8 @@
-// A pinion, A, that turns about the x axis of its frame, and a rack, B, that moves along the x axis of its own. Bearing
-// and guide are other joints. Solved with the other joints; no threads.
+// Rack and pinion: the pinion, A, rotates about the x axis of its frame; the rack, B, moves along the x axis of its
+// own. Other joints must hold the pinion's bearing and the rack's guide.
 //
-//   theta  rotation of the pinion about its axis since the joint was made          ratio  rad of theta per meter of d
-//   d      way of the rack's anchor from the pinion's along the rack's axis
+//   theta  rotation of the pinion about its axis since the joint was created        ratio  rad of theta per meter of d
+//   d      distance of the rack's anchor from the pinion's along the rack's axis
 //   Rows:       the rack-and-pinion part's, C = theta - ratio (d - d0)
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace fulcrum {
 
-// A, the pinion, turns about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other joints
-// make bearing and guide.
+// A, the pinion, rotates about anchor A's axis through its point; B, the rack, moves along anchor B's axis. Other
+// joints must hold the bearing and the guide.
 struct RackAndPinionJointSettings : JointSettings {
     float ratio = 1.0f;  // rad/m, |ratio| in 1e-9..1e9; 1 / radius of the pinion, < 0 to reverse
 };

@@ -7,8 +7,6 @@ namespace fulcrum {
 
 namespace {
 
-constexpr uint32_t kAngularSlot = 3 * ControlSlots::kCount;
-
 bool IsLockedAtZero(const AxisControl& control) {
     return control.limited && control.limits.min == 0.0f && control.limits.max == 0.0f && IsHard(control.limits.spring);
 }
@@ -28,7 +26,8 @@ std::unique_ptr<JointType> MakeType(const SixDofJointSettings& s) {
 }
 
 SixDofJoint::SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape)
-    : linear_{axes[0], axes[1], axes[2]}, angular_({axes[3], axes[4], axes[5]}, shape) {
+    : AngularJointType({axes[3], axes[4], axes[5]}, shape, 3 * ControlSlots::kCount),
+      linear_{axes[0], axes[1], axes[2]} {
     int count = 0;
     for (uint8_t k = 0; k < 3; ++k) {
         if (IsLockedAtZero(linear_[k])) ++count;
@@ -46,7 +45,7 @@ uint32_t SixDofJoint::MaxRows() const {
 }
 
 void SixDofJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
-    angular_.CollectRows(pose, kAngularSlot, rows);
+    angular_.CollectRows(pose, firstAngularSlot_, rows);
     const Matrix3 frame = ToMatrix(pose.frameA);
     for (uint8_t k = 0; k < 3; ++k) {
         if (!HasRows(k)) continue;

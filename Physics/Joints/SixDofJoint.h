@@ -1,18 +1,17 @@
-// Six axes, each free, limited or locked, hard or soft, with motors and friction. Solved with the other joints; no
-// threads.
+// Six-degrees-of-freedom joint: six axes, each free, limited or locked, hard or soft, with motors and friction.
 //
-//   translation  d = way of B's anchor along the axes of A's frame; rows as in SliderJoint.h
+//   translation  d = position of B's anchor along the axes of A's frame; rows as in SliderJoint.h
 //   rotation     AngularControls.h
-// What is locked at zero and hard from the start becomes a block where blocks exist: all three translations a point,
-// two of them a line, rotations as in AngularControls.h; else a row of its own.
+// Axes that are locked at zero and hard from the start become block parts where possible: three translations a point,
+// two a line, rotations as in AngularControls.h. Other locked axes are rows of their own.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/AngularControls.h>
+#include <Fulcrum/Constraints/Joints/AngularJointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
 
-// What `limited` alone means: locked at zero.
+// A locked axis: `limited` with the default limits, both zero.
 inline constexpr AxisControl kLockedAxis = {.limited = true};
 
 // Each axis free, limited or locked (kLockedAxis; hard or, with a spring on its limits, soft), with motor and friction.
@@ -21,7 +20,7 @@ struct SixDofJointSettings : JointSettings {
     std::array<AxisControl, 6> axes{};
     SwingShape shape = SwingShape::Pyramid;
 
-    // Ends the program where there is no such axis.
+    // Aborts the program if there is no such axis.
     AxisControl& operator[](JointAxis axis) {
         if (axis > JointAxis::AngularZ) [[unlikely]]
             AbortWith("SixDofJointSettings has no axis of this number", "");
@@ -31,45 +30,33 @@ struct SixDofJointSettings : JointSettings {
 MaybeError Check(const SixDofJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const SixDofJointSettings& settings);
 
-class SixDofJoint final : public JointType {
+class SixDofJoint final : public AngularJointType {
 public:
-    // In the order of JointAxis; m and N, rad and N m. Limits of rotations as AngularControls wants them.
+    // In the order of JointAxis; m and N, rad and N m. Limits of rotations as AngularControls requires them.
     SixDofJoint(const std::array<AxisControl, 6>& axes, SwingShape shape);
 
     const char* Kind() const override { return "six-dof"; }
     JointDrawing Drawing() const override;
     JointLocks Locks() const override { return {linearLock_, angular_.Lock(), line_, angular_.FreeAxis()}; }
     uint32_t MaxRows() const override;
-    void Start(const JointPose& pose) override { angular_.Start(pose); }
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
     AxisControl* Control(JointAxis axis) override {
-        const auto index = static_cast<int>(axis);
-        return index < 3 ? &linear_[static_cast<size_t>(index)] : &angular_.At(index - 3);
-    }
-    LimitBounds BoundsOf(JointAxis axis) const override {
-        return axis < JointAxis::AngularX ? LimitBounds{} : angular_.BoundsOf(static_cast<int>(axis) - 3);
+        return IsAngular(axis) ? AngularJointType::Control(axis) : &linear_[static_cast<size_t>(axis)];
     }
     uint32_t FirstSlot(JointAxis axis) const override { return static_cast<uint32_t>(axis) * ControlSlots::kCount; }
-    void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
-    double Coordinate(JointAxis axis, const JointPose& pose) const override {
-        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose)
-                                          : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
-    }
-    std::span<double> State() override { return angular_.State(); }
     void VisitSettings(const SettingVisitor& visit) override {
-        angular_.VisitSettings(visit);
+        AngularJointType::VisitSettings(visit);
         visit(linearLock_);
         visit(line_);
     }
 
 private:
-    // Whether the linear axis k has rows of its own.
+    // Whether the linear axis k has rows of its own, not only a lock.
     bool HasRows(uint8_t k) const {
         return linearLock_ == LinearLock::None || (linearLock_ == LinearLock::Line && k == line_);
     }
 
     std::array<AxisControl, 3> linear_;
-    AngularControls angular_;
     LinearLock linearLock_ = LinearLock::None;
     uint8_t line_ = 0;
 };

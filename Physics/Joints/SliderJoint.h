@@ -1,7 +1,7 @@
-// A slider: B's anchor moves along the x axis of A's frame and does not turn, with limits, motor and friction. Solved
-// with the other joints; no threads.
+// Slider joint: B's anchor moves along the x axis of A's frame, and B does not rotate relative to A; with limits, motor
+// and friction.
 //
-//   d           way from A's anchor to B's along x            x  unit axis, moving with A
+//   d           distance from A's anchor to B's along x            x  unit axis, moving with A
 //   Locks:      line along x; all rotation
 //   Rows:       C = d - ..., J = [-x, -(r1 + u) x x, x, r2 x x] (LinearX)
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace fulcrum {
 
-// B slides along the anchor's axis and does not turn.
+// B slides along the anchor's axis and does not rotate relative to A.
 struct SliderJointSettings : JointSettings {
     AxisControl slide{};  // m, m/s, N
 };

@@ -1,10 +1,10 @@
-// A shoulder: B's anchor stays at A's, B's x axis swings within an ellipse or a pyramid about A's, and B twists about
-// it in a range; motors and friction about all axes. Solved with the other joints; no threads.
+// Swing-twist joint (shoulder): B's anchor stays at A's, B's x axis swings within an ellipse or a pyramid about A's,
+// and B twists about it within a range; motors and friction about all axes.
 //   Locks:      point; rotation as far as axes are locked (AngularControls.h)
 //   Rows:       AngularControls.h (AngularX the twist, AngularY and AngularZ the swing)
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/AngularControls.h>
+#include <Fulcrum/Constraints/Joints/AngularJointType.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
 namespace fulcrum {
@@ -12,44 +12,26 @@ namespace fulcrum {
 // A point joint for shoulders: B's axis (x) swings about A's y and z in an ellipse or a pyramid, and B twists about it.
 struct SwingTwistJointSettings : JointSettings {
     SwingShape shape = SwingShape::Ellipse;
-    // rad, N m. Limits within -pi..pi, at pi there is none. Those of the swing, the y and z of its rotation vector, are
-    // around 0, and for an ellipse the same to both sides: -a..a, -b..b.
+    // rad, N m. Limits within -pi..pi; pi means no limit. Those of the swing apply to y and z of its rotation vector
+    // and contain 0; for an ellipse they are symmetric: -a..a, -b..b.
     AxisControl twist{}, swingY{}, swingZ{};
 };
 MaybeError Check(const SwingTwistJointSettings& settings);
 std::unique_ptr<JointType> MakeType(const SwingTwistJointSettings& settings);
 
-class SwingTwistJoint final : public JointType {
+class SwingTwistJoint final : public AngularJointType {
 public:
-    // rad, N m; limits as AngularControls wants them.
+    // rad, N m; limits as AngularControls requires them.
     SwingTwistJoint(const AxisControl& twist, const AxisControl& swingY, const AxisControl& swingZ, SwingShape shape)
-        : angular_({twist, swingY, swingZ}, shape) {}
+        : AngularJointType({twist, swingY, swingZ}, shape, 0) {}
 
     const char* Kind() const override { return "swing-twist"; }
     JointDrawing Drawing() const override;
     JointLocks Locks() const override { return {LinearLock::Point, angular_.Lock(), 0, angular_.FreeAxis()}; }
     uint32_t MaxRows() const override { return angular_.MaxRows(); }
-    void Start(const JointPose& pose) override { angular_.Start(pose); }
-    void CollectRows(const JointPose& pose, JointRowList& rows) override { angular_.CollectRows(pose, 0, rows); }
-    AxisControl* Control(JointAxis axis) override {
-        return axis < JointAxis::AngularX ? nullptr : &angular_.At(static_cast<int>(axis) - 3);
+    void CollectRows(const JointPose& pose, JointRowList& rows) override {
+        angular_.CollectRows(pose, firstAngularSlot_, rows);
     }
-    LimitBounds BoundsOf(JointAxis axis) const override {
-        return axis < JointAxis::AngularX ? LimitBounds{} : angular_.BoundsOf(static_cast<int>(axis) - 3);
-    }
-    uint32_t FirstSlot(JointAxis axis) const override {
-        return axis < JointAxis::AngularX ? 0 : (static_cast<uint32_t>(axis) - 3) * ControlSlots::kCount;
-    }
-    void SetTargetOrientation(const Quaternion& target) override { angular_.SetTargetOrientation(target); }
-    double Coordinate(JointAxis axis, const JointPose& pose) const override {
-        return axis < JointAxis::AngularX ? JointType::Coordinate(axis, pose)
-                                          : angular_.Coordinate(static_cast<int>(axis) - 3, pose);
-    }
-    std::span<double> State() override { return angular_.State(); }
-    void VisitSettings(const SettingVisitor& visit) override { angular_.VisitSettings(visit); }
-
-private:
-    AngularControls angular_;
 };
 
 }  // namespace fulcrum

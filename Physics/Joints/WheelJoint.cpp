@@ -15,7 +15,7 @@ struct WheelSlots {
 
 struct WheelAngles {
     float steering, tilt, spin;                // rad
-    Vector3 steeringAxis, tiltAxis, spinAxis;  // J: rates per relative angular velocity
+    Vector3 steeringAxis, tiltAxis, spinAxis;  // Jacobians with respect to the relative angular velocity
 };
 
 WheelAngles AnglesOf(const JointPose& pose) {
@@ -24,7 +24,7 @@ WheelAngles AnglesOf(const JointPose& pose) {
     const float s = Dot(d, a.y);
     WheelAngles angles;
     angles.steering = Atan2(-Dot(d, a.z), Dot(d, a.x));
-    // The wheel's upright: d, `up` and `side` as they are without spin.
+    // The wheel carrier's frame, which does not spin: d, `up` and `side`.
     const Vector3 side = Normalized(Cross(d, a.y), a.z);
     const Vector3 up = Cross(side, d);
     angles.tilt = Atan2(s, Length(Cross(d, a.y)));

@@ -1,7 +1,7 @@
-// A wheel, B, on a chassis, A: it slides along the suspension's axis, may be steered about it, and spins about its
-// axle. Solved with the other joints; no threads.
+// Wheel joint: the wheel, B, slides along the suspension's axis of the chassis, A, may be steered about it, and spins
+// about its axle.
 //
-//   x, y        of A's frame: the axle as it is unsteered, and the suspension's axis, upwards
+//   x, y        of A's frame: the unsteered axle, and the suspension's axis, upwards
 //   d           x axis of B's frame
 //   Rotation of frame B against A: about y by delta (steering, AngularY), about z by tau (the axle's tilt, 0), about x
 //   by psi (spin, AngularX). With w the relative angular velocity and s = d . y = sin(tau):
@@ -15,18 +15,19 @@
 
 namespace fulcrum {
 
-// B, a wheel, spins about the anchor's axis, its axle, and slides along the anchor's normal, upwards, which steers too.
+// B, a wheel, spins about the anchor's axis, its axle, and slides along the anchor's normal, which points upwards and
+// is the steering axis.
 struct WheelJointSettings : JointSettings {
     WheelJointSettings() { anchorA.normal = Vector3(0, 1, 0); }
 
-    // m, N; zero where the anchors coincide. The motor's spring carries the chassis, the limits are the stops.
+    // m, N; zero if the anchors coincide. The motor's spring carries the chassis, the limits are the stops.
     AxisControl suspension = {
         .limited = true,
         .limits = {.min = -0.2f, .max = 0.2f},
         .motor = {.mode = MotorMode::ToPosition,
                   .spring = {.mode = SpringMode::StiffnessAndDamping, .stiffness = 4.0e4f, .damping = 4.0e3f}}};
     bool isSteered = false;
-    // rad, N m; used where steered.
+    // rad, N m; used if steered.
     AxisControl steering = {
         .limited = true, .limits = {.min = -0.6f, .max = 0.6f}, .motor = {.mode = MotorMode::ToPosition, .spring = {}}};
     AxisControl spin{};  // rad, N m; the motor drives, friction brakes
@@ -36,8 +37,8 @@ std::unique_ptr<JointType> MakeType(const WheelJointSettings& settings);
 
 class WheelJoint final : public JointType {
 public:
-    // suspension: m, N; its spring is a position motor, its stops are limits. steering: rad, N m, not used where it is
-    // not steered. spin: rad, N m; the motor drives, friction brakes.
+    // suspension: m, N; its spring is a position motor, its stops are limits. steering: rad, N m, only used if
+    // isSteered. spin: rad, N m; the motor drives, friction brakes.
     WheelJoint(const AxisControl& suspension, bool isSteered, const AxisControl& steering, const AxisControl& spin);
 
     const char* Kind() const override { return "wheel"; }

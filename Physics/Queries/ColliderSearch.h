@@ -1,5 +1,5 @@
-// The colliders that a query has to look at, from the world's trees through its filter. Called by QueryInterface under
-// the world's lock. Allocates nothing; thread-safe.
+// Finds the colliders that a query must test: traverses the world's trees and applies the query's filter. Called by
+// QueryInterface under the world's lock. Allocates nothing; thread-safe.
 #pragma once
 
 #include <Fulcrum/Physics/Misuse.h>
@@ -18,8 +18,8 @@ public:
           seesAll_(filter.layers == 0xFFFFFFFFu && SeesAllCategories(filter) && filter.ignore.empty() &&
                    !filter.accepts && !filter.acceptsChild) {}
 
-    // Traverses the trees whose layers the filter wants: walk(tree, visit), where `visit` calls found(collider) for
-    // what is accepted. What left its fat bounds is found by its present ones.
+    // Traverses the trees of the filter's layers: walk(tree, visit), where `visit` calls found(collider) for accepted
+    // colliders. Colliders outside their fat bounds are tested by their current bounds.
     template <class Walk, class Found>
     void Run(const Walk& walk, const Found& found) const {
         const ColliderStore& store = world_.colliders;
@@ -38,10 +38,10 @@ public:
             }
         }
         if (filter_.layers & store.staticLayers) walk(store.staticTree, visit);
-        if (filter_.sensors) walk(store.sensorTree, visit);  // they never leave their bounds: Sense refits them
+        if (filter_.sensors) walk(store.sensorTree, visit);  // always within their bounds, which Sense refits
     }
 
-    // What the trees hold is measured from this.
+    // Bounds in the trees are relative to this origin.
     const Position& Origin() const { return world_.colliders.boundsOrigin; }
     uint32_t BodyOf(uint32_t collider) const { return world_.colliders.colliders[collider].body; }
     uint32_t ChildOf(uint32_t collider) const { return fulcrum::ChildOf(world_.bodies, world_.colliders, collider); }
@@ -53,7 +53,7 @@ public:
         const Pose body = world_.bodies.ExactCenterPoseOf(BodyOf(collider));
         return piece.offset ? body * LocalOf(world_.bodies, world_.colliders, collider) : body;
     }
-    // The order that breaks ties: by body, then child.
+    // Tie-breaking order: by body, then child.
     bool ComesBefore(uint32_t a, uint32_t b) const {
         const uint32_t bodyA = BodyOf(a), bodyB = BodyOf(b);
         return bodyA != bodyB ? bodyA < bodyB : ChildOf(a) < ChildOf(b);
@@ -86,7 +86,7 @@ private:
     bool seesAll_;
 };
 
-// A query's hold on the world, and its trees brought up to date. False: the query is not allowed here, which was
+// Locks the world for a query and updates its trees. Converts to false if the query is not allowed here, which was
 // reported.
 class QueryScope {
 public:
@@ -100,7 +100,7 @@ private:
     WorldLock::Shared shared_;
 };
 
-// The pose of a shape's center frame from that of its own.
+// The pose of a shape's center frame, from the pose of its own frame.
 inline Pose CenterPoseOf(const Shape& shape, const Pose& pose) {
     return {pose.Transform(shape.Mass().centerOfMass), pose.rotation};
 }

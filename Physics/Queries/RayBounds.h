@@ -1,5 +1,5 @@
-// The box around the origins of some rays and that around their displacements: how close together they lie. Used by the
-// batches of ray casts. Pure.
+// Bounding boxes of the origins and displacements of a set of rays, which tell how coherent they are. Used by batches
+// of ray casts. Pure functions.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/RayCast.h>
@@ -13,10 +13,10 @@ struct RayBounds {
     Position low = Position::Constant(kFar), high = Position::Constant(-kFar);
     Bounds displacements;
 
-    // Half the sides of a box that holds all rays on their way, begun in the middle of their origins.
+    // Half extents of a box, centered at the middle of the origins, that contains all rays.
     Vector3 Reach() const { return Vector3(Position((high - low) * 0.5).cast<float>()) + displacements.HalfExtents(); }
-    // Whether that box is so small beside its way that it will hardly find more than its rays do.
-    // Never where a ray is not finite, or so long that sums overflow: it goes alone, and so do those beside it.
+    // Whether the box is so small relative to the rays' length that a packet query will find few colliders that no
+    // single ray hits. False if a ray is not finite, or so long that sums overflow: then the rays are cast one by one.
     bool IsTight() const {
         const float way = displacements.Center().cwiseAbs().sum();
         return way < kLongest && Reach().sum() <= kTight * way;
@@ -25,7 +25,7 @@ struct RayBounds {
     static constexpr float kTight = 0.45f, kLongest = 1e18f;  // m
     static constexpr double kFar = 1e300;
 
-    // Of rayOf(i) for i < count. What is not a number counts as near.
+    // Bounds of rayOf(i) for i < count. NaN is ignored.
     template <class RayOf>
     static RayBounds Of(size_t count, const RayOf& rayOf) {
         double low[6], high[6];

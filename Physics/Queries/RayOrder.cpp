@@ -11,9 +11,10 @@
 namespace fulcrum {
 namespace {
 
-// A ray is a point in six dimensions: its origin and its displacement. Its place is the path to it from the box around
-// all, halved again and again across its longest side: a Morton code whose bits are dealt out by length. So only what
-// the rays differ in counts, be it where they are, as rays from above, or where they go, as those of a camera.
+// Treats a ray as a point in six dimensions, origin and displacement, and computes its Morton code in the bounding box
+// of all rays. The bits of the code are assigned to dimensions by extent, as if the box were repeatedly halved across
+// its longest side. So the dimensions in which the rays differ dominate: origins of parallel rays, directions of camera
+// rays.
 class Places {
 public:
     static constexpr int kDigitBits = 11, kBits = 2 * kDigitBits;
@@ -35,14 +36,14 @@ public:
         }
     }
 
-    // Whether runs of neighbors will be close, if the rays fill their box evenly.
+    // Whether neighbors in the order will be close together, assuming that the rays fill their box uniformly.
     bool IsWorthIt() const { return isWorthIt_; }
 
-    // To be called before Of.
+    // Assigns the bits to dimensions. Call before Of.
     void Deal() {
         int bitsOf[kSides] = {};
         for (int bit = 0; bit < kBits; ++bit) {
-            // The first bit of a side is the highest of what it is counted in.
+            // The first bit assigned to a dimension is its most significant one.
             const int side = dealtTo_[bit], inSide = kSideBits - 1 - bitsOf[side]++;
             for (uint32_t byte = 0; inSide >= 0 && byte < 256; ++byte)
                 if (byte >> (inSide & 7) & 1) deal_[side][inSide >> 3][byte] |= 1u << (kBits - 1 - bit);
@@ -65,13 +66,13 @@ public:
 private:
     static constexpr int kSides = 6, kSideBits = 16;
     static constexpr double kMostSteps = 65535;
-    static constexpr double kTight = 0.25;  // less than what RayBounds asks: the order costs something, too
+    static constexpr double kTight = 0.25;  // stricter than RayBounds, since sorting has a cost, too
 
     bool IsTight(const double (&side)[kSides]) const {
         double reach = 0, way = 0;
         for (int axis = 0; axis < 3; ++axis) {
             reach += 0.5 * (side[axis] + side[3 + axis]);
-            // The mean length, whether all go the same way or each another.
+            // The mean length, independent of the rays' directions.
             const double low = low_[3 + axis], high = double{bounds_.displacements.upper[axis]};
             way += 0.5 * (std::max(-low, high) + std::fabs(0.5 * (low + high)));
         }
@@ -80,11 +81,11 @@ private:
 
     RayBounds bounds_;
     double low_[kSides], scale_[kSides];
-    int dealtTo_[kBits];  // the side of each bit of a place, the highest first
+    int dealtTo_[kBits];  // dimension of each bit of a code, most significant first
     int used_[kSides];
     int usedCount_ = 0;
     bool isWorthIt_ = false;
-    uint32_t deal_[kSides][2][256] = {};  // the bits of a place that a byte of a side gives
+    uint32_t deal_[kSides][2][256] = {};  // code bits for each byte of a dimension
 };
 
 }  // namespace

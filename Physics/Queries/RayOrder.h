@@ -1,5 +1,5 @@
-// Orders the rays of a batch so that those next to each other lie close together. Called by the batches of ray casts.
-// An object is used by one thread at a time and keeps its memory. Nothing but speed depends on the order.
+// Sorts the rays of a batch so that neighbors in the order are close together. Called by batches of ray casts. An
+// object is used by one thread at a time and reuses its memory. Only performance depends on the order.
 #pragma once
 
 #include <Fulcrum/Collision/Queries/RayCast.h>
@@ -11,13 +11,13 @@ namespace fulcrum {
 
 class RayOrder {
 public:
-    // `together`: how many in a row are to be close. Where there are too few rays for that, they keep their order.
+    // `together`: packet size for which neighbors should be close. If there are too few rays, the order is unchanged.
     void Sort(std::span<const Ray> rays, uint32_t together);
-    // The numbers of the rays, in order.
+    // The indices of the rays, in the sorted order.
     std::span<const uint32_t> Numbers() const { return numbers_; }
 
 private:
-    // A number and the place of its ray.
+    // A ray's index and its code.
     struct Item {
         uint32_t place, number;
     };

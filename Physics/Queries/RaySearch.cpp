@@ -6,11 +6,11 @@ namespace fulcrum {
 namespace {
 
 constexpr int kMost = RayCaster::kMostRays;
-// Colliders that the box may find and no ray of the packet meets, for each ray; where there are more, rays do better
-// alone.
+// Number of colliders per ray that the box may find although no ray of the packet hits them; with more, single rays are
+// faster.
 constexpr int kMostInVain = 2;
 
-// The rays of a packet that are valid, and the box that sweeps over all of them, in the coordinates of the trees.
+// The valid rays of a packet, and a swept box that contains all of them, in the coordinates of the trees.
 struct Packet {
     RayCaster casters[kMost];
     uint32_t numbers[kMost];
@@ -28,8 +28,8 @@ struct Packet {
     }
 };
 
-// The box that sweeps over rays in bounds of this kind, in the coordinates of the trees. As wide as rounding may ask
-// for: 2^-50 of positions, and 2^-18 of the way, because of the fractions at which the tree has boxes met.
+// A swept box that contains all rays within the bounds, in the coordinates of the trees. Expanded for rounding errors:
+// 2^-50 of positions, and 2^-18 of the displacement, because the tree computes hit fractions in float.
 TreeRay SweptBox(const ColliderSearch& search, const RayBounds& bounds) {
     const Position center = (bounds.low + bounds.high) * 0.5;
     const Vector3 way = bounds.displacements.lower.cwiseAbs().cwiseMax(bounds.displacements.upper.cwiseAbs());
@@ -38,7 +38,7 @@ TreeRay SweptBox(const ColliderSearch& search, const RayBounds& bounds) {
                    (bounds.Reach() + far.cast<float>()) * (1 + 0x1p-20f) + way * 0x1p-18f);
 }
 
-// False: the rays are not close enough together, and nothing is done.
+// Returns false, and does nothing, if the rays are not close enough together.
 bool CastTogether(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
                   const RayCastSettings& settings, std::span<WorldRayHit> hits) {
     const RayBounds bounds = RayBounds::Of(which.size(), [&](size_t i) -> const Ray& { return rays[which[i]]; });

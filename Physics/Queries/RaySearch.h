@@ -1,7 +1,7 @@
-// Closest hits of rays in the world: of one ray, and of a packet of rays that lie close together, which are the same
-// bits. Called by QueryInterface under the world's lock. Thread-safe; allocates nothing.
+// Closest hits of rays in the world: for single rays and for packets of coherent rays, with bit-identical results.
+// Called by QueryInterface under the world's lock. Thread-safe; allocates nothing.
 //
-// A ray's hit of a collider does not depend on what else it hit before; the closest is the least by fraction, body,
+// A ray's hit with a collider does not depend on earlier hits, and the closest hit is the minimum by fraction, body,
 // child. So the result depends neither on the order of the colliders nor on the other rays of the packet.
 #pragma once
 
@@ -20,19 +20,19 @@ inline WorldRayHit ToWorld(const ColliderSearch& search, uint32_t collider, cons
     return result;
 }
 
-// found(collider) for all colliders whose bounds the ray meets up to `limit`, which it may lower.
+// Calls found(collider) for all colliders whose bounds the ray hits up to `limit`, which `found` may lower.
 template <class Found>
 void AlongRay(const ColliderSearch& search, const TreeRay& ray, float& limit, const Found& found) {
     search.Run([&](const BoundsTree& tree, const auto& visit) { tree.CastRay(ray, limit, visit); }, found);
 }
 
-// The best hit of a ray so far.
+// The closest hit of a ray so far.
 struct ClosestCollider {
     static constexpr uint32_t kNone = ~0u;
     RayHit hit;
     uint32_t collider = kNone;
 
-    // Takes a hit no farther than `limit`, which it lowers, if that comes before what there is.
+    // Takes a hit not beyond `limit` if it precedes the current one, and lowers `limit`.
     void Take(const ColliderSearch& search, uint32_t of, const RayHit& found, float& limit) {
         if (found.fraction > limit) return;
         if (collider != kNone && found.fraction == hit.fraction && search.ComesBefore(collider, of)) return;
@@ -42,11 +42,11 @@ struct ClosestCollider {
     }
 };
 
-// False: none, `hit` is unchanged.
+// Returns false if there is none; then `hit` is unchanged.
 bool CastClosest(const ColliderSearch& search, const Ray& ray, const RayCastSettings& settings, WorldRayHit& hit);
 
-// The rays with the numbers `which`, at most RayCaster::kMostRays, into their hits; {} for none. Fast where they lie
-// close together.
+// Casts the rays with the indices `which`, at most RayCaster::kMostRays, and writes their hits; {} for none. Fast if
+// they are close together.
 void CastClosest(const ColliderSearch& search, std::span<const Ray> rays, std::span<const uint32_t> which,
                  const RayCastSettings& settings, std::span<WorldRayHit> hits);
 

@@ -44,9 +44,9 @@ bool CanHaveMotor(const AxisControl* control) {
 // Bodies and joints to be created, in world space.
 struct Ragdoll::Placed {
     std::vector<BodySettings> bodies;
-    std::vector<RagdollJointFrames> frames;  // the first part's is not used
+    std::vector<RagdollJointFrames> frames;  // that of the first part is unused
     std::vector<std::optional<RagdollJoint>>
-        joints;  // without their bodies; none for the first part and between two that are not dynamic
+        joints;  // without their bodies; none for the first part and between two parts of which none is dynamic
 };
 
 Ragdoll::Placed Ragdoll::Place(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion) {
@@ -70,7 +70,7 @@ Ragdoll::Placed Ragdoll::Place(const RagdollSettings& settings, const Pose& orig
     return placed;
 }
 
-// Valid settings may be invalid once placed: beyond the largest position, or with another motion type.
+// Valid settings may become invalid when placed: beyond the largest position, or with another motion type.
 MaybeError Ragdoll::CheckPlaced(const Placed& placed) {
     for (size_t i = 0; i < placed.bodies.size(); ++i) {
         if (MaybeError e = NamedPart(i, "body", Check(placed.bodies[i]))) return e;
@@ -103,7 +103,7 @@ MaybeError Ragdoll::Build(const RagdollSettings& settings, const Placed& placed)
     const BodySettings& root = settings.parts[0].body;
     originInRoot_ = Inverse({root.position.cast<float>(), Normalized(root.rotation)});
     for (size_t i = 0; i < settings.parts.size(); ++i) {
-        // The settings are checked: this fails only where changes are not allowed now, so for the first part or never.
+        // The settings are checked, so this fails only if changes are not allowed now: for the first part or never.
         Result<BodyId> body = system_->Bodies().Create(placed.bodies[i]);
         if (!body) return body.GetError();
         bodies_.push_back(body.Value());
@@ -123,7 +123,7 @@ MaybeError Ragdoll::Build(const RagdollSettings& settings, const Placed& placed)
 }
 
 void Ragdoll::Remove() {
-    // Their joints go with them.
+    // This removes their joints, too.
     for (BodyId id : bodies_) {
         if (!system_->Bodies().Exists(id)) continue;
         if (Status removed = system_->Bodies().Remove(id); !removed) return ReportMisuse(removed.GetError());
@@ -187,7 +187,7 @@ Status Ragdoll::DriveByMotors(std::span<const Pose> pose) {
     return Done{};
 }
 
-// `target` is the joint's frame on the part, seen from that on the parent.
+// `target` is the joint's frame on the part relative to that on the parent.
 void Ragdoll::SetTarget(JointId joint, const RelativePose& target) {
     JointInterface& joints = system_->Joints();
     const auto motorOf = [&](JointAxis axis) -> std::optional<JointMotor> {
@@ -197,14 +197,16 @@ void Ragdoll::SetTarget(JointId joint, const RelativePose& target) {
     };
     const auto setPosition = [&](JointAxis axis, JointMotor motor, double position) {
         motor.targetPosition = static_cast<float>(position);
-        static_cast<void>(joints.SetMotor(joint, axis, motor));  // it was valid, and the position is finite
+        static_cast<void>(
+            joints.SetMotor(joint, axis, motor));  // cannot fail: the motor was valid, and the position is finite
     };
     for (int k = 0; k < 3; ++k)
         if (const auto motor = motorOf(kLinearAxes[k])) setPosition(kLinearAxes[k], *motor, target.position[k]);
     if (joints.GetControl(joint, JointAxis::AngularY)) {
         static_cast<void>(joints.SetTargetOrientation(joint, target.rotation));
     } else if (const auto motor = motorOf(JointAxis::AngularX)) {
-        // A hinge counts turns: the target is the one within its limits, or, without any, the nearest.
+        // A hinge counts revolutions: the target is the equivalent angle within its limits, or, without limits, the
+        // nearest.
         const AxisControl& control = *joints.GetControl(joint, JointAxis::AngularX);
         TurnCount turns;
         turns.Start(NearestTurn(TwistAngle(target.rotation), joints.GetCoordinate(joint, JointAxis::AngularX)),
@@ -223,7 +225,7 @@ Status Ragdoll::Drive(std::span<const Pose> pose, float dt, bool dynamicToo) {
         const MotionType motion = bodies.GetMotionType(bodies_[i]);
         return motion == MotionType::Kinematic || (motion == MotionType::Dynamic && dynamicToo);
     };
-    // All are checked before any is set: a refusal leaves no part moved.
+    // All poses are checked before any is set: on error no part has moved.
     for (size_t i = 0; i < pose.size(); ++i) {
         if (!drives(i)) continue;
         const auto [linear, angular] = VelocityTo(i, pose[i], dt);

@@ -9,44 +9,44 @@ namespace fulcrum {
 
 class Ragdoll {
 public:
-    // In the reference pose, its frame at `origin`. With `motion` all parts move so, whatever their settings say:
-    // kinematic for hard keying. Parts that are joined do not collide, all others do (JointSettings::collideConnected).
-    // Two joined parts of which none is dynamic get no joint. The system must outlive the ragdoll's use. Errors: those
-    // of Check; of `origin` NonFinite, Unnormalized. Nothing is created then.
+    // Creates it in the reference pose, with its frame at `origin`. `motion` overrides the motion type of all parts:
+    // kinematic for hard keying. Parts connected by a joint do not collide unless JointSettings::collideConnected, all
+    // others do. Two parts of which none is dynamic get no joint. The system must outlive the ragdoll's use. Errors:
+    // those of Check; of `origin` NonFinite, Unnormalized. On error nothing is created.
     static Result<Ragdoll> Create(PhysicsSystem& system, const RagdollSettings& settings, const Pose& origin = {},
                                   std::optional<MotionType> motion = {});
 
-    // Removes the bodies and joints; those that were removed already are skipped.
+    // Removes the bodies and joints; those already removed are skipped.
     void Remove();
 
-    // One a part, in the order of the settings.
+    // One per part, in the order of the settings.
     std::span<const BodyId> Bodies() const;
-    // The joint of each part to its parent; an invalid id for the first part and where no joint was created.
+    // The joint of each part to its parent; an invalid id for the first part and parts without a joint.
     std::span<const JointId> Joints() const;
 
-    // Spans of poses have one element per part, the pose of the body's own frame. Errors of all that follow: UnknownId
-    // (a body was removed), OutOfRange (another number of poses), NonFinite, Unnormalized: nothing has changed then.
+    // Spans of poses have one element per part, the pose of the body's own frame. Errors of all functions below:
+    // UnknownId (a body was removed), OutOfRange (wrong number of poses), NonFinite, Unnormalized; then nothing has
+    // changed.
     Status GetPose(std::span<Pose> pose) const;
-    // Teleports; velocities stay as they are.
+    // Teleports the parts; velocities are unchanged.
     Status SetPose(std::span<const Pose> pose);
 
-    // Sets the targets of all position motors to the pose: orientations, and of a SixDof the places along its axes.
-    // Where the whole ragdoll stands is not asked for. Motors that are off, or drive a speed, stay so; removed joints
-    // are passed over.
+    // Sets the targets of all position motors to the pose: orientations, and for SixDof joints the positions along
+    // their axes. Only relative poses matter, not where the ragdoll is. Motors that are off or drive a speed are
+    // unchanged; removed joints are skipped.
     Status DriveByMotors(std::span<const Pose> pose);
-    // Soft keying: gives all parts the velocity with which they reach the pose after `dt` seconds (> 0), gravity
-    // counted in, unless contacts and joints stop them on the way. Errors also: NonPositive, Unsupported (a body is
-    // frozen).
+    // Soft keying: sets the velocities of all parts such that they reach the pose after `dt` seconds (> 0), gravity
+    // included, unless contacts and joints stop them. Errors also: NonPositive, Unsupported (a body is frozen).
     Status DriveByVelocities(std::span<const Pose> pose, float dt);
-    // Hard keying: moves the kinematic parts so that they are in the pose after `dt` seconds (> 0); dynamic parts
-    // follow as their joints say. Errors as for soft keying.
+    // Hard keying: moves the kinematic parts so that they reach the pose after `dt` seconds (> 0); dynamic parts follow
+    // by their joints. Errors as for soft keying.
     Status DriveKinematically(std::span<const Pose> pose, float dt);
 
-    // Gives every angular axis of the ragdoll's joints that can have one this motor, but for its target position, which
-    // stays. Errors: those of JointInterface::SetMotor.
+    // Sets this motor, except its target position, on every angular axis of the ragdoll's joints that can have one.
+    // Errors: those of JointInterface::SetMotor.
     Status SetMotors(const JointMotor& motor);
 
-    // Where the ragdoll's frame is for the first part to be in its reference pose there.
+    // The pose of the ragdoll's frame for which the first part's current pose is its reference pose.
     Pose Origin() const;
 
 private:

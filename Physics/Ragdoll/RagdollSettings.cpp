@@ -9,7 +9,7 @@ namespace {
 
 std::string PathOf(size_t part) { return "parts[" + std::to_string(part) + "]"; }
 
-// What is wrong with the part's place in the tree.
+// Checks the part's name and its place in the tree.
 MaybeError CheckTree(const RagdollSettings& settings, size_t index) {
     const RagdollPart& part = settings.parts[index];
     if (part.name.empty()) return Error{ErrorCode::Degenerate, PathOf(index) + ".name is empty; a part needs one"};
@@ -33,7 +33,7 @@ MaybeError Named(const RagdollSettings& settings, size_t part, const char* field
 
 Pose PoseOf(const RagdollPart& part) { return {part.body.position, Normalized(part.body.rotation)}; }
 
-// An anchor as a frame, in the space it is given in.
+// An anchor as a frame, in the space in which it is given.
 Pose FrameOf(const JointAnchor& anchor) { return {anchor.point, RotationOf(anchor)}; }
 
 }  // namespace
@@ -63,7 +63,7 @@ RagdollJointFrames JointFramesOf(const RagdollSettings& settings, size_t part) {
     const Pose childPose = PoseOf(child), parentPose = PoseOf(settings.parts[static_cast<size_t>(child.parent)]);
     const JointSettings& joint = CommonOf(child.joint);
     const bool isWorld = joint.space == JointSpace::World;
-    // Both in the ragdoll's frame; what is given in a body's frame takes the way there and back.
+    // Both in the ragdoll's frame; anchors given in a body's frame are transformed to it and back.
     const auto inRagdoll = [&](const JointAnchor& anchor, const Pose& body) {
         const Pose frame = FrameOf(anchor);
         return isWorld ? frame : body * RelativePose{frame.position.cast<float>(), frame.rotation};
@@ -73,7 +73,7 @@ RagdollJointFrames JointFramesOf(const RagdollSettings& settings, size_t part) {
     if (joint.anchorB) {
         JointAnchor anchor = *joint.anchorB;
         if (!anchor.normal) {
-            // As near to that of frame A as its axis allows.
+            // As close to frame A's normal as the axis allows.
             const Vector3 axis = Normalized(anchor.axis);
             Vector3 normal = Rotate(onParent.rotation, Vector3(0, 1, 0));
             if (!isWorld) normal = InverseRotate(childPose.rotation, normal);

@@ -23,7 +23,7 @@ MaybeError CheckSkeleton(const Skeleton& skeleton) {
     return std::nullopt;
 }
 
-// The index of the only element with the name; what is wrong, if not.
+// The index of the element with the name; an error if there is none or more than one.
 template <class Elements>
 Result<int> Find(const Elements& elements, const std::string& name, const char* what) {
     const auto hasName = [&](const auto& element) { return element.name == name; };
@@ -37,13 +37,13 @@ Result<int> Find(const Elements& elements, const std::string& name, const char* 
 
 RelativePose Normal(const RelativePose& pose) { return {pose.position, Normalized(pose.rotation)}; }
 
-// The shortest rotation that takes the direction of a to that of b; none where one of them has no length.
+// The shortest rotation that takes the direction of a to that of b; identity if one of them has zero length.
 Quaternion TurnBetween(const Vector3& a, const Vector3& b) {
     const float lengths = Length(a) * Length(b);
     if (!(lengths > 1e-12f)) return {};
     const Vector3 cross = Cross<float>(a, b);
     const float w = lengths + Dot(a, b);
-    // Opposite: half a turn about anything perpendicular.
+    // Opposite: half a revolution about any perpendicular axis.
     if (w < 1e-6f * lengths) {
         const Vector3 axis = Perpendicular(Normalized(a));
         return {axis.x(), axis.y(), axis.z(), 0.0f};
@@ -106,7 +106,7 @@ Result<SkeletonMapping> SkeletonMapping::Create(const Skeleton& skeleton, const 
     return mapping;
 }
 
-// The joints between `end` and the nearest joint above that is placed already, if there are any and there is one.
+// The chain of joints between `end` and its nearest ancestor that is already placed, if any.
 std::span<const RelativePose> SkeletonMapping::ReferenceLocals() const { return references_; }
 
 void SkeletonMapping::AddChain(const Skeleton& skeleton, int end, std::vector<bool>& isPlaced) {
@@ -127,7 +127,7 @@ void SkeletonMapping::AddChain(const Skeleton& skeleton, int end, std::vector<bo
         chain.fractions.push_back(way);
     }
     way += lengthOf(end);
-    // Joints in one place share evenly.
+    // Coincident joints share evenly.
     for (size_t i = 0; i < chain.joints.size(); ++i)
         chain.fractions[i] = way > 1e-6f ? chain.fractions[i] / way
                                          : static_cast<float>(i + 1) / static_cast<float>(chain.joints.size() + 1);
@@ -155,7 +155,7 @@ void SkeletonMapping::ToRagdoll(std::span<const Pose> joints, std::span<Pose> pa
     }
 }
 
-// Poses the chain's joints; its start and end are posed.
+// Computes the poses of the chain's joints; those of its start and end are known.
 void SkeletonMapping::PlaceChain(const Chain& chain, std::span<const RelativePose> locals,
                                  std::span<Pose> joints) const {
     const Pose& start = joints[static_cast<size_t>(chain.start)];
@@ -166,7 +166,7 @@ void SkeletonMapping::PlaceChain(const Chain& chain, std::span<const RelativePos
         joints[static_cast<size_t>(joint)] = led;
     }
     led = led * locals[static_cast<size_t>(chain.end)];
-    // First the whole chain turns about its start; then what is missing at its end is shared out.
+    // First the whole chain is rotated about its start; then the remaining error at its end is distributed.
     const Quaternion turn =
         TurnBetween((led.position - start.position).cast<float>(), (goal.position - start.position).cast<float>());
     const auto turned = [&](const Pose& pose) {
@@ -192,7 +192,7 @@ void SkeletonMapping::ToSkeleton(const Pose& origin, std::span<const Pose> parts
         joints[j] = parts[static_cast<size_t>(joints_[j].part)] * joints_[j].inPart;
         joints[j].rotation = Normalized(joints[j].rotation);
     }
-    // A chain may start at a joint of an earlier one.
+    // In this order, because a chain may start at a joint of an earlier one.
     for (const Chain& chain : chains_) PlaceChain(chain, locals, joints);
     for (size_t j = 0; j < joints_.size(); ++j) {
         const int parent = joints_[j].parent;

@@ -8,7 +8,7 @@ namespace {
 
 bool IsDynamic(const RagdollPart& part) { return part.body.motion == MotionType::Dynamic; }
 
-// Its parent where both move, else null.
+// Its parent if both are dynamic, else null.
 const RagdollPart* MovingParentOf(const RagdollSettings& settings, const RagdollPart& part) {
     if (part.parent == RagdollPart::kNoParent || !IsDynamic(part)) return nullptr;
     const RagdollPart& parent = settings.parts[static_cast<size_t>(part.parent)];
@@ -51,10 +51,10 @@ Status StabilizeMasses(RagdollSettings& settings, const MassRule& rule) {
         BodySettings& body = changed.parts[i].body;
         if (body.motion != MotionType::Dynamic) continue;
         const float mass = static_cast<float>(masses[i] * (before / after));
-        body.inertia *= mass / MassOf(body);  // zero, the shape's own, follows by itself
+        body.inertia *= mass / MassOf(body);  // zero means the shape's own inertia, which scales by itself
         body.mass = mass;
     }
-    // Products of extreme numbers may leave the range of a float.
+    // Products of extreme values may overflow a float.
     if (MaybeError e = Check(changed)) return *e;
     settings = std::move(changed);
     return Done{};
@@ -68,7 +68,7 @@ Status StabilizeInertia(RagdollSettings& settings, const InertiaRule& rule) {
         return Error{ErrorCode::OutOfRange,
                      "principalRatio is " + std::to_string(rule.principalRatio) + "; it must be 1 or more"};
     RagdollSettings changed = settings;
-    std::vector<float> floors(settings.parts.size(), 0.0f);  // of the moments, by the children
+    std::vector<float> floors(settings.parts.size(), 0.0f);  // lower bounds of the moments, from the children
     for (size_t i = settings.parts.size(); i-- > 0;) {
         RagdollPart& part = changed.parts[i];
         if (!IsDynamic(part)) continue;

@@ -1,24 +1,23 @@
-// Makes a ragdoll's masses and inertias such that a few iterations hold its joints: an iterative solver passes an
-// impulse on to the next joint by the ratio of the masses that meet there, so a heavy part on a light one converges
-// slowly, and what is light to turn spins up under the impulses of its neighbors. On the settings, once, before the
-// ragdoll is created. Source of the idea: O. Strunk, "Stop my Constraints from Blowing Up!", GDC 2013; the rules are
-// our own. Any thread.
+// Adjusts a ragdoll's masses and inertias such that few iterations hold its joints. An iterative solver converges
+// slowly if a heavy part hangs on a light one, and parts with small inertia spin up under the impulses of their
+// neighbors. Applied to the settings once, before the ragdoll is created. Source of the idea: O. Strunk, "Stop my
+// Constraints from Blowing Up!", GDC 2013; the rules are our own. Any thread.
 #pragma once
 
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
 
 namespace fulcrum {
 
-// Mass of a part over that of its parent, 0 < smallest <= largest.
+// Allowed ratio of a part's mass to its parent's, 0 < smallest <= largest.
 struct MassRule {
     float smallest = 0.2f;
     float largest = 1.0f;
 };
 
-// From the root to the leaves each part's mass becomes the nearest that obeys the rule; then all are scaled by one
-// factor, so that the whole weighs what it did. Inertias scale with the masses. Parts that are not dynamic, and those
-// whose parent is not, keep their mass but for that factor. Errors: those of Check; of the rule NonFinite, NonPositive,
-// OutOfRange: nothing has changed then.
+// From the root to the leaves, each part's mass is clamped to the rule; then all masses are scaled by a common factor
+// to keep the total. Inertias scale with the masses. Parts that are not dynamic, and those whose parent is not, are
+// only scaled by that factor. Errors: those of Check; of the rule NonFinite, NonPositive, OutOfRange: then nothing has
+// changed.
 Status StabilizeMasses(RagdollSettings& settings, const MassRule& rule = {});
 
 struct InertiaRule {
@@ -26,12 +25,14 @@ struct InertiaRule {
     float childRatio = 1.0f;      // > 0: a part's largest principal moment over its parent's smallest
 };
 
-// From the leaves to the root each part's principal moments are raised to what the rule asks for, and no further;
-// masses stay. A raised moment turns more slowly under the same torque, nothing else. Parts that are not dynamic are
-// passed over. Errors: those of Check; of the rule NonFinite, NonPositive, OutOfRange: nothing has changed then.
+// From the leaves to the root, each part's principal moments are raised to the minimum that the rule requires; masses
+// are unchanged. A raised moment only makes the part rotate more slowly under the same torque. Parts that are not
+// dynamic are skipped. Errors: those of Check; for the rule NonFinite, NonPositive, OutOfRange; then nothing has
+// changed.
 Status StabilizeInertia(RagdollSettings& settings, const InertiaRule& rule = {});
 
-// What the body will have, by its settings: kg, and kg m2 about the shape's principal axes. Settings must be valid.
+// Mass and inertia of a body created with these settings: kg, and kg m2 about the shape's principal axes. Settings must
+// be valid.
 float MassOf(const BodySettings& body);
 Vector3 InertiaOf(const BodySettings& body);
 

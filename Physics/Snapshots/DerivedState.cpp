@@ -1,4 +1,4 @@
-// What is no part of a snapshot because it follows from the rest.
+// Recomputes derived state, which is not stored in snapshots.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Physics/Snapshots/SnapshotAccess.h>
@@ -29,8 +29,8 @@ void SnapshotAccess::Resize(ColliderStore& colliders, uint32_t count) {
 
 void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
     for (uint32_t i = count; i < pairs.pairs.size(); ++i)
-        if (const uint64_t key = KeyOf(pairs, i); key != kNoKey) pairs.Strike(key, i);
-    // While pairs are read it has those of before, too.
+        if (const uint64_t key = KeyOf(pairs, i); key != kNoKey) pairs.RemoveKey(key, i);
+    // While pairs are read the table also contains the previous ones.
     if (size_t places = std::max<size_t>(pairs.table_.size(), 1024);
         2 * size_t{count} > places || pairs.table_.empty()) {
         while (2 * size_t{count} > places) places *= 2;
@@ -59,6 +59,21 @@ void SnapshotAccess::Resize(JointStore& joints, uint32_t count) {
 
 void SnapshotAccess::FindAwakePlaces(BodyStore& bodies) {
     for (uint32_t place = 0; place < bodies.awake.size(); ++place) bodies.cold[bodies.awake[place]].awakePlace = place;
+}
+
+void SnapshotAccess::ListSpecial(BodyStore& bodies) {
+    bodies.worldBody = BodyStore::kNone;
+    for (IndexSet* set : {&bodies.pushed, &bodies.singleMoves}) {
+        set->words_.assign((bodies.cold.size() + 63) / 64, 0);
+        set->size_ = 0;
+    }
+    for (uint32_t i = 0; i < bodies.Size(); ++i) {
+        const BodyCold& body = bodies.cold[i];
+        if (!body.exists) continue;
+        if (bodies.dynamics[i].hasForce || !body.lastPush.IsZero()) bodies.pushed.Insert(i);
+        if (body.singleMove != SingleMove::None) bodies.singleMoves.Insert(i);
+        if (body.isWorld) bodies.worldBody = i;
+    }
 }
 
 void SnapshotAccess::AttachPieces(const BodyStore& bodies, ColliderStore& store) {
@@ -140,11 +155,11 @@ void SnapshotAccess::ListColor(ConstraintColoring& coloring, ConstraintColoring:
 
 void SnapshotAccess::AttachPair(const ColliderStore& colliders, PairStore& store, ConstraintColoring& coloring,
                                 uint32_t index, uint64_t before) {
-    // Few are others than they were.
+    // Few pairs differ from the previous ones.
     const uint64_t key = KeyOf(store, index);
     if (key != before) {
-        if (before != kNoKey) store.Strike(before, index);
-        if (key != kNoKey) store.Enter(key, index);
+        if (before != kNoKey) store.RemoveKey(before, index);
+        if (key != kNoKey) store.AddKey(key, index);
     }
     Pair& pair = store.pairs[index];
     if (!pair.exists) return;

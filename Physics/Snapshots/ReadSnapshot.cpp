@@ -1,5 +1,6 @@
 // A snapshot is restored in two passes. The first finds, or makes, all that may be missing, and leaves the world as it
 // is; the second writes over it, and cannot fail.
+#include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
@@ -22,21 +23,21 @@ Error Missing(const char* what, uint64_t hash, const char* remedy) {
     return {ErrorCode::UnknownId, std::string("the snapshot names ") + what + " (hash " + text + ") that " + remedy};
 }
 
-// What the first pass finds.
+// Results of the first pass.
 struct Found {
     SnapshotHead head;
-    // By body; null: the one that it has now.
+    // By body; null: keeps its current one.
     std::vector<ShapePtr> shapes;
     std::vector<std::shared_ptr<MutableCompound>> compounds;
     std::vector<std::shared_ptr<const GroupFilter>> filters;  // by number
-    std::vector<uint32_t> filtered;                           // of each with a filter its index, and the number
-    std::vector<bool> hasJoint;                               // by joint
-    std::vector<std::unique_ptr<JointType>> types;            // by joint; null: the one that it has now
+    std::vector<uint32_t> filtered;                 // for each body with a filter: its index, then the filter's number
+    std::vector<bool> hasJoint;                     // by joint
+    std::vector<std::unique_ptr<JointType>> types;  // by joint; null: keeps its current one
 };
 
 // ---- Shapes
 
-// The shapes that are known, by their hashes; gathered when the first is missed.
+// Known shapes by their hashes; collected when the first lookup needs them.
 class KnownShapes {
 public:
     KnownShapes(const BodyStore& bodies, std::span<const ShapePtr> given) : bodies_(bodies), given_(given) {}
@@ -56,6 +57,7 @@ private:
         };
         for (const BodyCold& body : bodies_.cold) add(body.shape);
         for (const ShapePtr& shape : given_) add(shape);
+        add(EmptyShape::Create());                      // that of the world body
         std::ranges::sort(shapes_, {}, &Entry::first);  // equal ones are as good as each other
     }
 
@@ -98,8 +100,8 @@ Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const Sh
 
 // ---- Group filters
 
-// Filters count as objects, of which several may decide alike: each of the snapshot becomes one of its own. A body's
-// own comes first, then those of other bodies, then those that are given.
+// Several filter objects may have the same content; each filter of the snapshot maps to a different object. Candidates
+// are first the body's own, then those of other bodies, then the given ones.
 Status FindFilters(SnapshotReader& s, const BodyStore& bodies,
                    std::span<const std::shared_ptr<const GroupFilter>> given, Found& found) {
     std::vector<uint64_t> hashes(s.Get<uint32_t>());
@@ -129,7 +131,7 @@ Status FindFilters(SnapshotReader& s, const BodyStore& bodies,
 
 // ---- Types of joints
 
-// One of the engine's kinds, with settings that are to be overwritten; null for others.
+// A type of one of the engine's kinds, whose settings are then overwritten; null for user-defined kinds.
 std::unique_ptr<JointType> MakeOfKind(uint64_t kind) {
     std::unique_ptr<JointType> made;
     const auto tryTo = [&](const auto& settings) {
@@ -196,6 +198,7 @@ void RestoreBodies(SnapshotReader& s, Found& found, BodyStore& bodies) {
     for (size_t i = 0; i + 1 < found.filtered.size(); i += 2)
         bodies.cold[found.filtered[i]].filter->group.filter = found.filters[found.filtered[i + 1]];
     SnapshotAccess::FindAwakePlaces(bodies);
+    SnapshotAccess::ListSpecial(bodies);
 }
 
 void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints, ConstraintColoring& coloring) {
@@ -214,7 +217,7 @@ void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints, Constrai
     }
 }
 
-// What a step noted for the next, or of itself.
+// State that a step keeps for the next step, and its report.
 void RestoreStep(SnapshotReader& s, WorldState& world, StepState& step) {
     SavedEfforts& efforts = step.savedEfforts;
     SnapshotAccess::VisitStep(s, world, step, efforts);
@@ -225,7 +228,7 @@ void RestoreStep(SnapshotReader& s, WorldState& world, StepState& step) {
     efforts.areRestored = true;
     efforts.version = world.coloring.Version();
     efforts.loadVersion = world.pairs.loadVersion;
-    // Steps that are now ahead must not be taken for those that were.
+    // Invalidates start poses noted for step numbers that will occur again.
     std::ranges::fill(step.sweeps.starts, SweepStore::Start{});
     std::ranges::fill(step.sensing.changedIn, uint64_t{0});
     std::ranges::fill(step.pairs.changes, PairChange::None);

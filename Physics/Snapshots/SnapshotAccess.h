@@ -1,6 +1,6 @@
-// The sections of a snapshot: what it has of each store. They are written, and read into a world whose arrays have been
-// given their sizes. What follows from other state is not written: places in lists, which shapes and bodies pairs are
-// of, lists of colors, trees and the hash table of pairs. Called by the functions of Snapshots.h; one thread.
+// The sections of a snapshot: the state of each store. They are written, and read into a world whose arrays already
+// have their sizes. Derived state is not written: indices in lists, shapes and bodies of pairs, lists of colors, trees
+// and the hash table of pairs. Called by the functions of Snapshots.h; one thread.
 #pragma once
 
 #include <Fulcrum/Physics/Snapshots/SnapshotElements.h>
@@ -8,7 +8,7 @@
 
 namespace fulcrum {
 
-// Single numbers, and sizes of arrays.
+// Scalars and sizes of arrays.
 struct SnapshotHead {
     SystemSettings settings;
     uint64_t step = 0;
@@ -17,10 +17,10 @@ struct SnapshotHead {
     bool keepsMassOverrides = false;
 };
 
-// In the place of the hash of a body's shape: it has none, or a compound of its own.
+// Instead of the hash of a body's shape: the body has no shape, or a mutable compound of its own.
 inline constexpr uint64_t kNoShape = 0, kOwnCompound = 2;
 
-// Member functions, since stores let it see what is private.
+// A class, since it is a friend of the stores.
 struct SnapshotAccess {
     static SnapshotHead HeadOf(const WorldState& world, const StepState& step);
     template <class Stream>
@@ -30,7 +30,7 @@ struct SnapshotAccess {
     static void VisitBodies(Stream& s, Bodies& bodies);
     template <class Stream, class Colliders>
     static void VisitColliders(Stream& s, Colliders& colliders);
-    // attach(i, before): called for each index, with KeyOf the one that was there before.
+    // attach(i, before): called for each index; before: KeyOf the previous pair at that index.
     template <class Stream, class Pairs, class Attach>
     static void VisitPairs(Stream& s, Pairs& pairs, const Attach& attach);
     template <class Stream, class Joints>
@@ -45,27 +45,29 @@ struct SnapshotAccess {
     template <class Stream, class World>
     static void VisitUserData(Stream& s, World& world);
 
-    // For the reader.
+    // Used by the reader.
     static void Resize(BodyStore& bodies, uint32_t count);
     static void Resize(ColliderStore& colliders, uint32_t count);
-    static void Resize(PairStore& pairs, uint32_t count);  // the arrays; the table of pairs gets room for as many, too
+    static void Resize(PairStore& pairs, uint32_t count);  // the arrays; also reserves the table of pairs
     static void Resize(JointStore& joints, uint32_t count);
-    // What follows from the rest. Places of bodies among those that are awake;
+    // Derived state. Indices of bodies in the list of awake ones;
     static void FindAwakePlaces(BodyStore& bodies);
+    // which of them were pushed, are to stop, or stand for the world;
+    static void ListSpecial(BodyStore& bodies);
     // the body and the piece of each collider; which of them moved; the trees;
     static void AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
     static void ListMoved(ColliderStore& colliders);
     static void UpdateTrees(const BodyStore& bodies, ColliderStore& colliders);
-    // a pair's bodies and shapes, its place in the hash table and in the lists of colors; a joint's there.
+    // a pair's bodies and shapes, its entries in the hash table and in the lists of colors; those of joints.
     static void ClearColors(uint32_t bodies, ConstraintColoring& coloring);
-    // before: KeyOf it as it was.
+    // before: its previous KeyOf.
     static void AttachPair(const ColliderStore& colliders, PairStore& pairs, ConstraintColoring& coloring,
                            uint32_t index, uint64_t before);
     static void ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
                           const ConstraintColoring::Entry& entry, const ColorSlot& place);
 
 private:
-    // By which the hash table has a pair; kNoKey: it has not.
+    // The key of a pair in the hash table; kNoKey if it is not there.
     static constexpr uint64_t kNoKey = ~uint64_t{0};
     static uint64_t KeyOf(const PairStore& pairs, uint32_t index) {
         const Pair& pair = pairs.pairs[index];
@@ -85,8 +87,8 @@ void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
 
 template <class Stream, class Bodies>
 void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
-    auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-           reportsContacts, sleepChanges, notesSleepChanges, free, count] = bodies;
+    auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
+           reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] = bodies;
     s.Begin(SnapshotSection::Bodies);
     for (uint32_t i = 0; i < cold.size(); ++i) {
         s.Reserve(kMostOfBody);
@@ -132,7 +134,7 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
     s.Begin(SnapshotSection::Pairs);
     const auto count = static_cast<uint32_t>(pairs.size());
     for (uint32_t i = 0; i < count; ++i) {
-        constexpr uint32_t kAhead = 12;  // of what is read
+        constexpr uint32_t kAhead = 12;  // prefetch distance
         if (i + kAhead < count) {
             __builtin_prefetch(&pairs[i + kAhead]);
             __builtin_prefetch(&pairs[i + kAhead].cache);
@@ -215,11 +217,11 @@ void SnapshotAccess::VisitSensors(Stream& s, Sensors& store, Changed& itsChanged
     s.EndBlock();
 }
 
-// Names all members: those that are not used here are elsewhere, are of a step, or follow from the rest.
+// Names all members: those not used here are written elsewhere, are temporary, or are derived.
 template <class Stream, class World, class Step>
 void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts) {
-    auto& [settings, ownJobs, jobs, listener, bodies, colliders, itsPairs, joints, coloring, sleeping, sensors, removed,
-           number, lock, outsideFatBounds] = world;
+    auto& [settings, ownJobs, jobs, listener, observer, bodies, colliders, itsPairs, joints, coloring, sleeping,
+           sensors, removed, number, lock, outsideFatBounds] = world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events] = step;
     auto& [deepOverlaps, dispersing, crowded] = crowd;

@@ -1,6 +1,6 @@
-// Deltas: a snapshot's blocks beside those of another one. Blocks that are the same are counted; of others the XOR with
-// the block of the same key is written in words of eight bytes, as a mask of the bytes that are not zero and these, or
-// as a zero and how many words are zero. A block that is new is beside nothing, which is all zeros.
+// Deltas compare a snapshot's blocks with those of the base. Equal blocks are only counted. For others the XOR with the
+// base's block of the same key is written in words of eight bytes: a mask of the non-zero bytes followed by these, or a
+// zero followed by the number of zero words. A new block is compared with zeros.
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@ constexpr uint64_t kDeltaMagic = 0x41544C45444C5546;  // "FULDELTA"
 
 struct DeltaHeader {
     uint64_t magic, format;
-    uint64_t base;            // checksum of the snapshot that it starts from
-    SnapshotHeader snapshot;  // of that which it leads to
-    uint64_t checksum;        // of what follows, and of the rows above
+    uint64_t base;            // checksum of the base snapshot
+    SnapshotHeader snapshot;  // header of the resulting snapshot
+    uint64_t checksum;        // of the following data and the members above
 };
 static_assert(std::has_unique_object_representations_v<DeltaHeader>);
 
@@ -33,8 +33,7 @@ public:
     uint32_t Key() const { return parts_.BlockAt(next_).key; }
     std::span<const std::byte> Bytes() const { return parts_.data.subspan(at_, parts_.BlockAt(next_).size); }
     void Advance() { at_ += parts_.BlockAt(next_++).size; }
-    // Keys ascend. The bytes of the block of a key, none where there is no such block; blocks before it are passed
-    // over.
+    // The bytes of the block with a key; empty if there is none. Keys must ascend from call to call.
     std::span<const std::byte> BytesOf(uint32_t key) {
         while (!IsAtEnd() && Key() < key) Advance();
         return !IsAtEnd() && Key() == key ? Bytes() : std::span<const std::byte>();
@@ -45,7 +44,7 @@ private:
     size_t next_ = 0, at_ = 0;
 };
 
-// The word at a place, with zeros beyond the end.
+// The word at an offset, padded with zeros beyond the end.
 uint64_t WordAt(std::span<const std::byte> bytes, size_t at) {
     uint64_t word = 0;
     if (at < bytes.size()) std::memcpy(&word, bytes.data() + at, std::min<size_t>(8, bytes.size() - at));
@@ -56,7 +55,7 @@ class DeltaWriter {
 public:
     explicit DeltaWriter(std::vector<std::byte>& bytes) : bytes_(bytes) { bytes_.resize(sizeof(DeltaHeader)); }
 
-    // Seven bits a byte, the lowest first.
+    // Variable-length integer: seven bits per byte, the lowest first.
     void Number(uint64_t number) {
         for (; number >= 0x80; number >>= 7) bytes_.push_back(static_cast<std::byte>(number | 0x80));
         bytes_.push_back(static_cast<std::byte>(number));
@@ -77,7 +76,7 @@ public:
     }
 
 private:
-    // Of the last word only what belongs to the block.
+    // The last word is cut to the block's size.
     static uint64_t Change(std::span<const std::byte> from, std::span<const std::byte> to, size_t at) {
         return WordAt(from.first(std::min(from.size(), to.size())), at) ^ WordAt(to, at);
     }
@@ -113,7 +112,7 @@ public:
         }
         return number;
     }
-    // Changes `to`, which has what it starts from.
+    // Applies the changes to `to`, which contains the base's block.
     void Block(std::span<std::byte> to) {
         for (size_t at = 0; at < to.size() && !hasFailed_;) {
             const auto mask = static_cast<unsigned>(Byte());
@@ -158,7 +157,7 @@ void Append(std::vector<std::byte>& bytes, const void* from, size_t size) {
     bytes.insert(bytes.end(), first, first + size);
 }
 
-// The snapshot's data and its table of blocks, behind room for its header.
+// Writes the snapshot's data and its table of blocks, after space for its header.
 MaybeError ApplyBlocks(const SnapshotParts& base, const SnapshotHeader& header, DeltaReader& in,
                        std::vector<std::byte>& snapshot) {
     Blocks from(base);

@@ -1,6 +1,6 @@
-// What a snapshot has of settings, bodies, colliders, pairs and joints, number by number. Each structure names its
-// members once, all of them: it does not compile where one is left out, so that no new state is forgotten. A function
-// serves writer and reader, which gets elements that are to be written over. See Snapshots.md for what is left out.
+// The members of settings, bodies, colliders, pairs and joints that a snapshot contains. Each structure's members are
+// all listed by a structured binding, so a new member does not compile until it is handled here. The same function
+// writes and reads an element. See Snapshots.md for what is left out.
 #pragma once
 
 #include <Fulcrum/Physics/Snapshots/SnapshotStream.h>
@@ -20,12 +20,12 @@ template <>
 struct IsPlain<ColliderRun> : std::true_type {};
 template <>
 struct IsPlain<SolvedContact> : std::true_type {};
-// Fifteen floats, two bytes and sixteen bits: no padding.
+// 15 floats, two bytes and 16 bits: no padding.
 template <>
 struct IsPlain<BodyDynamics> : std::true_type {};
 static_assert(sizeof(BodyId) == 8 && sizeof(JointId) == 8 && sizeof(ColliderRun) == 12 && sizeof(SolvedContact) == 8);
 
-// Bits of a byte, which are no objects of their own.
+// Bit fields, which cannot be bound by reference.
 template <class Stream, class... Bits>
 uint8_t VisitBits(Stream& s, Bits... bits) {
     uint8_t all = 0;
@@ -89,10 +89,10 @@ void VisitEffort(Stream& s, Effort& effort) {
 
 // ---- Bodies
 
-// What an element of a body holds at most, its filter and children included.
+// Upper bound of the bytes of a body's element, filter and children included.
 inline constexpr size_t kMostOfBody = 512;
 
-// Without the group's filter.
+// Except the group's filter.
 template <class Stream, class Filter>
 void VisitFilter(Stream& s, Filter& filter) {
     auto& [category, mask, group] = filter;
@@ -100,21 +100,52 @@ void VisitFilter(Stream& s, Filter& filter) {
     if constexpr (!Stream::kWrites) group.filter = nullptr;
 }
 
-// Without the compound.
+// Except the compound.
 template <class Stream, class Children>
 void VisitChildren(Stream& s, Children& children) {
     auto& [compound, origin, massUnit, moreColliders] = children;
     s(origin, massUnit, moreColliders);
 }
 
-// Of an index without a body the generation is all that counts. A body that was removed has its colliders until the
-// next step.
+// Members that few bodies use. isOdd: whether this one uses any.
+template <class Stream, class Cold>
+void VisitOddities(Stream& s, Cold& body, bool isOdd) {
+    if constexpr (!Stream::kWrites) {
+        body.singleMove = SingleMove::None;
+        body.lastPush = {};
+        body.gravity = Vector3::Zero();
+        body.isSteady = body.isWorld = body.hasGravity = false;
+        if (!isOdd) body.keptMass = nullptr;
+    }
+    if (!isOdd) return;
+    const uint8_t bits = VisitBits(s, body.isSteady, body.hasGravity, body.keptMass != nullptr, body.isWorld);
+    if constexpr (!Stream::kWrites) {
+        body.isSteady = bits & 1;
+        body.hasGravity = bits >> 1 & 1;
+        body.isWorld = bits >> 3 & 1;
+        if (!(bits >> 2 & 1)) body.keptMass = nullptr;
+        else if (!body.keptMass) body.keptMass = std::make_unique<KeptMass>();
+    }
+    s(body.singleMove, body.lastPush.force, body.lastPush.torque);
+    if (body.hasGravity) s(body.gravity);
+    if (!body.keptMass) return;
+    auto& [mass, inertia, principalAxes] = *body.keptMass;
+    s(mass, inertia, principalAxes);
+}
+
+// Of an index without a body only the generation matters. A body that was removed has its colliders until the next
+// step.
 template <class Stream, class Cold>
 bool VisitCold(Stream& s, Cold& body) {
     auto& [shape, userData, material, force, torque, filter, firstCollider, colliderCount, children, generation,
-           awakePlace, sleepingIsland, continuous, exists, placed, removed, isSensor] = body;
+           awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, exists, placed, removed,
+           isSensor, isSteady, isWorld, hasGravity] = body;
     s(generation);
-    const uint8_t bits = VisitBits(s, exists, placed, removed, isSensor, filter != nullptr, children != nullptr);
+    // Members that few bodies use.
+    bool isOdd = false;
+    if constexpr (Stream::kWrites)
+        isOdd = singleMove != SingleMove::None || keptMass || !lastPush.IsZero() || isSteady || isWorld || hasGravity;
+    const uint8_t bits = VisitBits(s, exists, placed, removed, isSensor, filter != nullptr, children != nullptr, isOdd);
     if constexpr (!Stream::kWrites) {
         exists = bits & 1;
         placed = bits >> 1 & 1;
@@ -124,6 +155,7 @@ bool VisitCold(Stream& s, Cold& body) {
         else if (!filter) filter = std::make_unique<BodyFilter>();
         if (!(bits >> 5 & 1)) children = nullptr;
         else if (!children) children = std::make_unique<BodyChildren>();
+        isOdd = bits >> 6 & 1;
         if (!exists && !removed) {
             const uint32_t itsGeneration = generation;
             body = {};
@@ -135,10 +167,11 @@ bool VisitCold(Stream& s, Cold& body) {
     s(friction, restitution, frictionRule, restitutionRule, firstCollider, colliderCount, sleepingIsland, continuous);
     if (filter) VisitFilter(s, *filter);
     if (children) VisitChildren(s, *children);
+    VisitOddities(s, body, isOdd);
     return true;
 }
 
-// userData is a section of its own; the others follow from lists.
+// userData is a section of its own; the other members are derived.
 template <class Stream, class Bodies>
 void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
     auto& state = bodies.states[i];
@@ -152,7 +185,7 @@ void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
         if constexpr (!Stream::kWrites) mass = {}, pose = {}, dynamics = {};
         return;
     }
-    // Displacements are those of a step, zero between steps.
+    // Displacements are zero between steps.
     auto& [linear, angular, nearFixed, marks, deltaPosition, deltaRotation, halfTurn] = state;
     auto& [inverseInertia, inverseMass, turns] = mass;
     auto& [rotation, acceleration, boundsChangedIn, position, innerRadius, spare] = pose;
@@ -166,7 +199,7 @@ void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
 
 inline constexpr size_t kMostOfCollider = 64;
 
-// Of an empty one only counts whether it waits in a list. The piece follows from the body's shape.
+// For an empty collider only its membership in a list matters. The child shape is derived from the body's shape.
 template <class Stream, class Collider>
 void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
     auto& [fat, previous, body, moving, queued, sensor] = collider;
@@ -197,8 +230,8 @@ void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
 
 inline constexpr size_t kMostOfPair = 512;
 
-// Without the shapes and bodies, which are those of the colliders. What only the points of a contact give a meaning to
-// is left out where there are none. False: there is none.
+// Except shapes and bodies, which are derived from the colliders, and data that are meaningless without contact points
+// if there are none. Returns false if there is no pair.
 template <class Stream, class Pair>
 bool VisitPair(Stream& s, Pair& pair, bool& isActive) {
     auto& [bodyA, bodyB, colliderA, colliderB, shapeA, shapeB, reference, pointCount, exists, fixedB, offset, surface,
@@ -230,7 +263,7 @@ bool VisitPair(Stream& s, Pair& pair, bool& isActive) {
     return true;
 }
 
-// Of a pair with so many points.
+// For a pair with this many points.
 template <class Stream, class Record>
 void VisitRecord(Stream& s, Record& record, uint32_t points) {
     auto& [normal, pointCount, friction, restitution, twistRadius, marks, impulse, frictionImpulse, twistImpulse, all] =
@@ -260,10 +293,10 @@ void VisitJointRecord(Stream& s, Record& record) {
     s(lockForce, lockTorque, totalForce, totalTorque);
 }
 
-// Without the type. False: there is none.
+// Except the type. Returns false if there is no joint.
 template <class Stream, class Joint>
 bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
-    auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, still,
+    auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, fixed,
            priority, breakForce, breakTorque, effort, massOverride, userData, teleportedBefore] = joint;
     s(generation, exists);
     if (!exists) return false;
@@ -271,7 +304,7 @@ bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     s(body, next, linear, angular, line, axis, maxRows, color.color);
     if constexpr (!Stream::kWrites) color.slot = 0;
     if (color.color != ColorSlot{}.color) s(color.slot);
-    s(isBreakable, enabled, collideConnected, overridesMass, still, priority, breakForce, breakTorque);
+    s(isBreakable, enabled, collideConnected, overridesMass, fixed, priority, breakForce, breakTorque);
     VisitEffort(s, effort);
     if (overridesMass) VisitMassOverride(s, massOverride);
     else if constexpr (!Stream::kWrites) massOverride = {};
@@ -279,8 +312,8 @@ bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     return true;
 }
 
-// What a type carries from step to step, and what is set along its axes. Its constants are a section of their own.
-// False: the type has other state than what is read.
+// State and controls of a joint type. Its settings are a section of their own. Returns false if the type's state has
+// another size than the data.
 template <class Stream>
 bool VisitType(Stream& s, JointType& type) {
     s(type.impulses, type.forces, type.turnedA, type.turnedB);
@@ -316,7 +349,7 @@ void VisitEvent(Stream& s, Event& event) {
 
 // ---- Events: what the next ones follow from
 
-// Without what is of one step.
+// Except temporaries of one step.
 template <class Stream, class Contact>
 void VisitReported(Stream& s, Contact& contact) {
     auto& [bodyA, bodyB, childA, childB, isOn, kind, manifoldCount] = contact;
@@ -344,7 +377,7 @@ void VisitSavedEffort(Stream& s, Group& group) {
     VisitEffort(s, effort);
 }
 
-// A list whose elements are visited one by one, each of at most `most` bytes.
+// Visits the elements of a list one by one, each of at most `most` bytes.
 template <class Stream, class List, class Visit>
 void VisitList(Stream& s, List& list, size_t most, Visit&& visit) {
     uint32_t count = static_cast<uint32_t>(list.size());

@@ -1,6 +1,6 @@
-// How snapshots are written and read: numbers one after the other, without padding, in blocks. Writer and reader are
-// called alike, so that one function describes an element for both. A block is hashed as it is written, while it is in
-// the cache. Used by Snapshots/; one thread.
+// Writer and reader of snapshots: values in sequence, without padding, in blocks. Both have the same interface, so that
+// one function describes an element for both. A block is hashed when it is written, while it is in the cache. Used by
+// Snapshots/; one thread.
 #pragma once
 
 #include <Fulcrum/Math/Assert.h>
@@ -19,7 +19,7 @@
 
 namespace fulcrum {
 
-// What arrays of a snapshot hold: deltas compare it with the same block of the same section of another snapshot.
+// The sections of a snapshot: deltas compare blocks with the same number and section of another snapshot.
 enum class SnapshotSection : uint8_t {
     Head,
     Shapes,
@@ -37,10 +37,10 @@ enum class SnapshotSection : uint8_t {
     Sleeping,
     Sensors,
     Step,
-    UserData,  // the last; no part of the state, as far as HashState is concerned
+    UserData,  // the last; not part of HashState
 };
 
-// One for each block, behind the data.
+// One per block, after the data.
 struct SnapshotBlock {
     uint32_t size;  // bytes
     uint32_t key;   // section << 24 | number of the block within it
@@ -53,11 +53,11 @@ struct SnapshotHeader {
     uint64_t stateHash;      // of the blocks before UserData: HashState
     uint64_t dataHash;       // of all blocks
     uint64_t blocks;         // their number
-    uint64_t checksum;       // of the rows above and the table of blocks
+    uint64_t checksum;       // of the members above and the table of blocks
 };
 static_assert(std::has_unique_object_representations_v<SnapshotHeader>);
 
-// What has no padding and owns nothing.
+// Types without padding that own no memory.
 template <class T>
 struct IsPlain : std::bool_constant<std::is_arithmetic_v<T> || std::is_enum_v<T> || std::is_same_v<T, std::byte>> {};
 template <class Real>
@@ -74,14 +74,14 @@ template <class T, size_t kCount>
 struct IsPlain<std::array<T, kCount>> : IsPlain<T> {};
 static_assert(sizeof(Bounds) == 24 && sizeof(RelativePose) == 28 && sizeof(Position) == 24);
 
-// A call with several numbers costs less than several calls: places are kept in registers meanwhile, which the
-// compiler cannot do by itself, since bytes that are written might be the place.
+// A call with several values is faster than several calls: the write position stays in a register, which the compiler
+// cannot do across calls, since written bytes may alias it.
 class SnapshotWriter {
 public:
     static constexpr bool kWrites = true;
 
-    // Writes to `bytes`, from its beginning, which grow as needed; or, with keeps = false, only hashes, and uses them
-    // as room.
+    // Overwrites `bytes` from the beginning, growing as needed; with keeps = false it only hashes, and uses `bytes` as
+    // buffer.
     SnapshotWriter(std::vector<std::byte>& bytes, std::vector<SnapshotBlock>& blocks, bool keeps)
         : bytes_(bytes), blocks_(blocks), keeps_(keeps) {
         blocks_.clear();
@@ -89,7 +89,7 @@ public:
         if (keeps) at_ = blockStart_ += sizeof(SnapshotHeader);
     }
 
-    // Before numbers are written: at most so many bytes follow until the next Reserve.
+    // Call before writing values: at most this many bytes may follow until the next Reserve.
     void Reserve(size_t bytes) {
         if (bytes > static_cast<size_t>(end_ - at_)) [[unlikely]]
             Grow(bytes);
@@ -102,7 +102,7 @@ public:
         ((std::memcpy(at, &values, sizeof values), at += sizeof values), ...);
         at_ = at;
     }
-    // Numbers of any number, after a Reserve of their own.
+    // An array of values; reserves by itself.
     template <class T>
     void List(const std::vector<T>& values) {
         static_assert(IsPlain<T>::value);
@@ -113,7 +113,7 @@ public:
         at_ += values.size() * sizeof(T);
     }
     void Begin(SnapshotSection section) { key_ = static_cast<uint32_t>(section) << 24; }
-    // Ends a block of the section, if there is anything in it.
+    // Ends a block of the section, unless it is empty.
     void EndBlock() {
         const auto size = static_cast<size_t>(at_ - blockStart_);
         if (size == 0) return;
@@ -127,7 +127,7 @@ public:
     size_t Size() const { return static_cast<size_t>(at_ - bytes_.data()); }
 
 private:
-    // By an eighth at least: what is new is written twice, with zeros first.
+    // Grows by at least an eighth: new bytes are zeroed before they are written.
     void Grow(size_t bytes) {
         const size_t at = Size(), start = static_cast<size_t>(blockStart_ - bytes_.data());
         bytes_.resize(std::max(at + bytes, bytes_.size() + bytes_.size() / 8));
@@ -144,7 +144,7 @@ private:
     uint32_t key_ = 0;
 };
 
-// Of data whose hash is right; still it never reads beyond them: then it gives zeros, and HasFailed is true.
+// Reads data whose checksum is valid. Never reads beyond the end: it then returns zeros, and HasFailed is true.
 class SnapshotReader {
 public:
     static constexpr bool kWrites = false;
@@ -200,7 +200,7 @@ private:
     bool hasFailed_ = false;
 };
 
-// Elements of an array end a block after so many: what does not change stays a block of its own in deltas.
+// Array elements per block: unchanged blocks cost almost nothing in deltas.
 inline constexpr uint32_t kElementsPerBlock = 64;
 template <class Stream>
 void EndElement(Stream& stream, uint32_t index) {

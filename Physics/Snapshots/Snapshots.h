@@ -1,4 +1,4 @@
-// Snapshots as PhysicsSystem offers them: written, checked, restored. Called under the world's lock; one thread.
+// Writes, checks and restores snapshots for PhysicsSystem. Called under the world's lock; one thread.
 #pragma once
 
 #include <Fulcrum/Physics/Snapshot.h>
@@ -8,17 +8,17 @@
 
 namespace fulcrum {
 
-// Group filters of bodies in the order in which bodies first name them.
+// Group filters of bodies in the order of their first use.
 struct NumberedFilters {
     std::vector<const GroupFilter*> filters;
-    std::vector<uint32_t> bodies;                  // of each with a filter its index, and the filter's number
+    std::vector<uint32_t> bodies;                  // for each body with a filter: its index, then the filter's number
     uint32_t NumberOf(const GroupFilter* filter);  // not null
 };
 
-// Lists that are made anew by each snapshot, and keep their memory.
+// Temporary lists of a snapshot, which keep their memory.
 struct SnapshotRoom {
     std::vector<SnapshotBlock> blocks;
-    std::vector<std::byte> block;  // of HashOfState
+    std::vector<std::byte> block;  // for HashOfState
     std::vector<std::byte> settings;
     std::vector<uint32_t> changed;
     NumberedFilters filters;
@@ -26,17 +26,17 @@ struct SnapshotRoom {
 };
 size_t HeapBytes(const SnapshotRoom& room);
 
-// How a snapshot begins: one of the whole state, and one of some bodies.
+// Magic numbers of snapshots of the whole state, and of some bodies.
 inline constexpr uint64_t kSnapshotMagic = 0x50414E534C554675,
                           kPartMagic = 0x54524150'4C554675;  // "uFULSNAP", "uFULPART"
-// Which build wrote a snapshot: its layout, not the machine's threads and lanes.
+// Identifies the layout of a build's snapshots, which depends neither on threads nor on lanes.
 uint64_t SnapshotFormat();
 
 // Error: Unsupported (children of a custom shape in a mutable compound). `bytes` are empty then.
 Status WriteSnapshot(const WorldState& world, const StepState& step, SnapshotRoom& room, std::vector<std::byte>& bytes);
 uint64_t HashOfState(const WorldState& world, const StepState& step, SnapshotRoom& room);
 
-// The parts of a snapshot that is whole.
+// The parts of a valid snapshot.
 struct SnapshotParts {
     SnapshotHeader header;
     std::span<const std::byte> data, table;
@@ -47,20 +47,20 @@ struct SnapshotParts {
         return block;
     }
 };
-// Errors: Unsupported (no snapshot, or of another build), Degenerate (damaged).
+// Errors: Unsupported (not a snapshot, or of another build), Degenerate (damaged).
 Result<SnapshotParts> CheckSnapshot(std::span<const std::byte> bytes, uint64_t magic = kSnapshotMagic);
-// Completes what was written: its header, and its table of blocks. stateHash: see SnapshotHeader.
+// Completes a snapshot: writes its header and its table of blocks. stateHash: see SnapshotHeader.
 void FinishSnapshot(uint64_t magic, uint64_t stateHash, const SnapshotWriter& writer,
                     std::span<const SnapshotBlock> blocks, std::vector<std::byte>& bytes);
 
-// Errors: those of CheckSnapshot; UnknownId (a shape, a group filter or a type of joint is not known), Unsupported (the
-// world has a contact listener and the snapshot's had none, or the other way round). The world is as it was then.
+// Errors: those of CheckSnapshot; UnknownId (a shape, a group filter or a joint type is unknown), Unsupported (only one
+// of the world and the snapshot has a contact listener). The world is unchanged then.
 Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources, SnapshotRoom& room,
                     WorldState& world, StepState& step);
 
-// What the type's VisitSettings shows, in place of what the list had.
+// Writes the data shown by the type's VisitSettings to the list, replacing its contents.
 void ReadSettings(JointType& type, std::vector<std::byte>& settings);
-// Of its Kind().
+// Hash of its Kind().
 uint64_t KindHash(const JointType& type);
 
 }  // namespace fulcrum

@@ -10,7 +10,7 @@
 namespace fulcrum {
 
 uint32_t NumberedFilters::NumberOf(const GroupFilter* filter) {
-    // Neighbors, as the limbs of ragdolls are, mostly share one.
+    // Consecutive bodies, such as the limbs of a ragdoll, mostly share one.
     const auto found = std::find(filters.rbegin(), filters.rend(), filter);
     if (found != filters.rend()) return static_cast<uint32_t>(filters.rend() - found) - 1;
     filters.push_back(filter);
@@ -50,7 +50,7 @@ SnapshotHead SnapshotAccess::HeadOf(const WorldState& world, const StepState& st
 
 namespace {
 
-// The shapes of bodies by their hashes; compounds that are edited are written whole.
+// Shapes are written as hashes, edited compounds in full.
 MaybeError WriteShapes(SnapshotWriter& s, const BodyStore& bodies, bool keeps) {
     s.Begin(SnapshotSection::Shapes);
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
@@ -73,7 +73,7 @@ MaybeError WriteShapes(SnapshotWriter& s, const BodyStore& bodies, bool keeps) {
     return std::nullopt;
 }
 
-// The filters by their hashes, and which bodies have which.
+// Filters are written as hashes, followed by the bodies that use them.
 void WriteFilters(SnapshotWriter& s, const BodyStore& bodies, NumberedFilters& numbered) {
     auto& [filters, bodiesOf] = numbered;
     filters.clear();
@@ -105,7 +105,7 @@ void WriteJointTypes(SnapshotWriter& s, const JointStore& joints, std::vector<st
     s.EndBlock();
 }
 
-// All that is part of the state.
+// All sections that are part of the state.
 MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepState& step, SnapshotRoom& room,
                       bool keeps) {
     SnapshotHead head = SnapshotAccess::HeadOf(world, step);

@@ -1,5 +1,5 @@
-// Asks the contact listener about a contact. Collide does so when it knows the points, and before anything follows from
-// them: a contact that is ignored has no color, wakes no body and costs the solver nothing.
+// Calls the contact listener for a contact. Collide does so when it knows the points, before they have any effect: an
+// ignored contact gets no color, wakes no body and costs the solver nothing.
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
@@ -15,8 +15,8 @@ void Forget(ContactRecord& record) {
     record.twistImpulse = 0;
 }
 
-// World axes: the normal, and by how much the surfaces' points that touch are beside those that did when it was found,
-// m.
+// World axes: the normal, and the offsets, m, of the current contact points on both surfaces from those when the
+// manifold was found.
 struct ContactAxes {
     Vector3 normal, besideA = Vector3::Zero(), besideB = Vector3::Zero();
 };
@@ -47,13 +47,13 @@ ContactView ViewContact(const BodyStore& bodies, const ColliderStore& colliders,
     return View(bodies, colliders, pairs, index, {ContactNormal(bodies, pairs, index)}, room);
 }
 
-// The normal has turned with neither body: it is taken from that one which turns less. What is round about its core
-// touches with another point of its surface as it rolls.
+// The normal rotates with neither body: it is taken from the body that rotated less. A rolling round shape touches with
+// another point of its surface.
 ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
                               uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
     const Pair& pair = pairs.pairs[index];
     const float* n = pairs.records[index].normal;
-    Quaternion bInA = pair.reference.rotation;  // of the bodies, when the normal was found
+    Quaternion bInA = pair.reference.rotation;  // relative rotation of the bodies when the normal was found
     if (pair.offset)
         bInA = LocalOf(bodies, colliders, pair.colliderA).rotation * bInA *
                LocalOf(bodies, colliders, pair.colliderB).rotation.Conjugate();
@@ -72,9 +72,9 @@ ContactChange AskAbout(const ContactListener& listener, const ContactView& conta
     listener.ModifyContact(contact, change);
     if (!(change.friction >= 0 && std::isfinite(change.friction))) change.friction = friction;
     if (!(change.restitution >= 0 && change.restitution <= 1)) change.restitution = restitution;
-    if (!IsFinite(change.surfaceVelocity) || !IsFinite(change.surfaceTurn)) {
+    if (!IsFinite(change.surfaceVelocity) || !IsFinite(change.surfaceAngularVelocity)) {
         change.surfaceVelocity.setZero();
-        change.surfaceTurn.setZero();
+        change.surfaceAngularVelocity.setZero();
     }
     if (!change.massOverride.IsValid()) change.massOverride = {};
     return change;
@@ -89,11 +89,13 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
     const ContactChange change = AskAbout(listener, view, record.friction, record.restitution);
     record.friction = change.friction;
     record.restitution = change.restitution;
-    record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceTurn);
+    record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceAngularVelocity);
     record.Set(ContactRecord::kMassOverride, !change.massOverride.IsNone());
     pairs.massOverrides[index] = change.massOverride;
-    if (change.ignore) Forget(record);
-    return !change.ignore;
+    record.Set(ContactRecord::kSensed, change.isSensor && !change.ignore);
+    const bool acts = !change.ignore && !change.isSensor;
+    if (!acts) Forget(record);
+    return acts;
 }
 
 }  // namespace fulcrum

@@ -1,4 +1,4 @@
-// Bodies are listed by their indices: bits of all of them are set, and read in order.
+// Bodies are listed by index: a bit is set for each, and the bits are read in order.
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ void ListBits(const BodyStore& bodies, std::span<const uint64_t> words, std::vec
         VisitBits(words[w], 64 * w, [&](uint32_t body) { ids.push_back(bodies.IdOf(body)); });
 }
 
-// What woke and fell asleep; any of it may have moved, and what is new and awake has.
+// Lists the bodies that woke or fell asleep; all of them may have moved, and new awake bodies have.
 void ListChanges(BodyStore& bodies, EventBuffers& buffers) {
     std::vector<uint32_t>& changes = bodies.sleepChanges;
     std::sort(changes.begin(), changes.end());
@@ -66,7 +66,7 @@ void ListBodyEvents(const StepContext& step, BodyStore& bodies, EventBuffers& bu
         const size_t wordCount = (bodies.Size() + 63) / 64;
         buffers.awakeWords.assign(wordCount, 0);
         for (const uint32_t body : bodies.awake) SetBit(buffers.awakeWords, body);
-        buffers.movedWords = buffers.awakeWords;  // those that may have
+        buffers.movedWords = buffers.awakeWords;  // candidates
         ListChanges(bodies, buffers);
         workers.jobs.ParallelFor(static_cast<uint32_t>(wordCount), 4, [&](JobRange range) {
             for (uint32_t w = range.begin; w < range.end; ++w) {

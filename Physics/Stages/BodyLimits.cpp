@@ -38,7 +38,7 @@ bool IsFiniteState(const BodyStore& bodies, uint32_t body) {
     return (odd == Wide<8>(0.0f)).All() && place == 0;
 }
 
-// The pose is finite unless something wrote over it; then the position is taken from the center of the bounds.
+// The pose is finite unless memory was overwritten; then the position is taken from the center of the bounds.
 void RepairPose(BodyStore& bodies, const ColliderStore& colliders, uint32_t body) {
     Pose pose = bodies.CenterPoseOf(body);
     const bool isPlaced = IsFinite(pose.position), isTurned = IsFinite(pose.rotation);
@@ -53,7 +53,7 @@ void RepairPose(BodyStore& bodies, const ColliderStore& colliders, uint32_t body
     bodies.SetCenterPose(body, pose);
 }
 
-// Limits forces that are finite but whose acceleration is not. Where forces are not finite Store freezes the body.
+// Limits finite forces whose acceleration is not finite. If forces are not finite, Store freezes the body.
 void LimitForces(BodyStore& bodies, uint32_t body) {
     BodyCold& cold = bodies.cold[body];
     if (!IsFinite(cold.force) || !IsFinite(cold.torque)) return;
@@ -61,7 +61,7 @@ void LimitForces(BodyStore& bodies, uint32_t body) {
     cold.torque = LimitedPush(cold.torque, Trace(bodies.masses[body]));
 }
 
-// Nothing moves it.
+// Sets velocities and forces to zero.
 void BringToRest(BodyStore& bodies, uint32_t body) {
     bodies.states[body] = {};
     bodies.unconstrained[body] = {};

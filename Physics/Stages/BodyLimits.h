@@ -1,6 +1,5 @@
-// Keeps the numbers of bodies within bounds, whatever users, contacts and joints make of them: speeds up to the
-// largest, forces that no float can turn into an acceleration, and bodies whose state is not finite, which are frozen.
-// For different bodies from any number of threads at once.
+// Keeps the state of bodies within bounds: clamps speeds to their limits and forces to those with a finite
+// acceleration, and freezes bodies whose state is not finite. For different bodies from any number of threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/StepState.h>
@@ -8,10 +7,10 @@
 
 namespace fulcrum {
 
-// Shortens a body's velocities, both finite, to its largest speeds. Returns whether the body is to be counted for it:
-// once a step, where that took more than a rounding.
+// Clamps a body's velocities, which must be finite, to its speed limits. Returns whether to count the body as clamped:
+// once per step, and only if the change exceeds rounding.
 [[nodiscard]] bool ShortenSpeeds(BodyStore& bodies, uint32_t body, Vector3& v, Vector3& w);
-// False for what is not finite.
+// False if not finite.
 inline bool IsWithinSpeeds(const BodyDynamics& d, const Vector3& v, const Vector3& w) {
     return LengthSquared(v) <= d.maxLinearSpeed * d.maxLinearSpeed &&
            LengthSquared(w) <= d.maxAngularSpeed * d.maxAngularSpeed;
@@ -20,11 +19,11 @@ inline bool IsWithinSpeeds(const BodyDynamics& d, const Vector3& v, const Vector
     return !IsWithinSpeeds(bodies.dynamics[body], v, w) && ShortenSpeeds(bodies, body, v, w);
 }
 
-// The first look at an awake body in a step: freezes what is not finite, shortens velocities and forces.
+// Validates an awake body at the start of a step: freezes it if its state is not finite, clamps velocities and forces.
 void AdmitBody(BodyStore& bodies, const ColliderStore& colliders, uint32_t body, WorkerFindings& findings);
 
-// Stops a body at its last good pose, and holds it there like a static one until it is placed anew.
+// Stops a body at its last valid pose and treats it as static until SetPose.
 void Freeze(BodyStore& bodies, const ColliderStore& colliders, uint32_t body, WorkerFindings& findings);
-// Stops a body for this step, because what constraints made of its motion is not finite.
+// Stops a body for this step, because the velocity computed by constraints is not finite.
 void Stop(BodyStore& bodies, uint32_t body, WorkerFindings& findings);
 }  // namespace fulcrum

@@ -1,4 +1,5 @@
-// A joint that did more than it stands is disabled. Its bodies search for each other: they may collide now.
+// Disables joints whose force or torque exceeded their limit. Their bodies search for pairs, since they may collide
+// now.
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/Waking.h>

@@ -1,6 +1,6 @@
 // Sorts the colored constraints into groups of islands. Small islands are packed into groups that fit a worker's cache
-// and are solved there whole; that saves them all barriers and most of the memory traffic. Done only in steps in which
-// a constraint began or ended. Serial; the islands follow from the constraints alone.
+// and are solved entirely by one worker, which avoids all barriers and most of the memory traffic. Done only in steps
+// in which a constraint began or ended. Serial; the islands depend on the constraints only.
 //   FindIslands.h   the islands and their groups
 //   JointTrees.h    joints under load that are solved as trees
 //   JointBatches.h  joints in lanes
@@ -42,7 +42,7 @@ BatchRange MakeRange(uint32_t first, uint32_t contacts, uint32_t& batches) {
     return range;
 }
 
-// An eighth to spare: resize alone would double the largest buffers of a step. What they hold is written anew.
+// Reserves an eighth more than needed: resize would double the largest buffers of a step. The contents are rewritten.
 template <class Batch>
 void GrowTo(std::vector<Batch>& batches, uint32_t count) {
     if (batches.size() >= count) return;
@@ -132,8 +132,8 @@ std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, con
     return contacts;
 }
 
-// Records hold impulses as forces of the system's substeps. What an impact gave in a short substep is no force that
-// goes on in longer ones: as where the time step grows, it is repeated at most twice.
+// Records store impulses scaled to the system's substeps. The impulse of an impact in a short substep is not a
+// persistent force: when substeps become longer, its warm start is scaled by at most two, as when the time step grows.
 void LimitImpulses(std::span<const SolvedContact> before, const SolverLayout& layout, int usualSubsteps,
                    PairStore& pairs, ScratchArena& scratch) {
     if (before.empty()) return;

@@ -1,7 +1,7 @@
-// Manifolds of all active pairs. A pair whose bodies hardly moved relative to each other keeps its manifold, of
-// which Prepare brings the separations up to date. Contacts reach as far ahead as the bodies may move within the step,
-// so that nothing is driven into the other by a whole step's motion before it is seen: in every direction, since what
-// is hit is deflected and turned.
+// Manifolds of all active pairs. A pair whose bodies hardly moved relative to each other keeps its manifold, and
+// Prepare updates its separations. The speculative distance covers the motion of the bodies within the step, so that no
+// body penetrates another before a contact exists. It covers all directions, since bodies that are hit are deflected
+// and rotated.
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
@@ -18,19 +18,19 @@ namespace fulcrum {
 
 namespace {
 
-// Whether fat bounds still overlap; asked only where they changed.
+// Whether fat bounds still overlap; tested only if they changed.
 bool Overlap(const ColliderStore& colliders, const Pair& pair) {
     return colliders.colliders[pair.colliderA].fat.Overlaps(colliders.colliders[pair.colliderB].fat);
 }
 
-// Whether the outer spheres of two bodies are farther apart than `distance`.
+// Whether the bounding spheres of two bodies are farther apart than `distance`.
 bool BallsApart(const CollideStores& stores, const Pair& pair, float distance) {
     const Vector3 between = (stores.bodies.CenterOf(pair.bodyB) - stores.bodies.CenterOf(pair.bodyA)).cast<float>();
     const float reach = pair.shapeA->OuterRadius() + pair.shapeB->OuterRadius() + distance;
     return LengthSquared(between) > reach * reach;
 }
 
-// m: how much closer the balls about two pieces may come within the step, also where something stops one of them at its
+// m: how much closer the bounding spheres of two pieces may get within the step, also if one of them is stopped at its
 // start.
 float ClosingMotion(const CollideStores& stores, const Pair& pair) {
     const BodyStore& bodies = stores.bodies;
@@ -49,8 +49,8 @@ float ClosingMotion(const CollideStores& stores, const Pair& pair) {
     return stores.step.dt * Sqrt(fastest);
 }
 
-// m: how much farther two pieces may reach by turning within the step: convex ones no farther than their outer balls.
-// Of a surface that turns it is what is near the other that counts.
+// m: how much farther two pieces may extend by rotating within the step; convex ones at most to their bounding spheres.
+// For a rotating surface, the part near the other piece counts.
 float TurningMotion(const CollideStores& stores, const Pair& pair) {
     const auto angleOf = [&](uint32_t body) { return stores.step.dt * Length(stores.bodies.AngularVelocityOf(body)); };
     const auto ofConvex = [&](uint32_t body, const Shape& shape) {
@@ -65,7 +65,7 @@ float TurningMotion(const CollideStores& stores, const Pair& pair) {
     return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
 }
 
-// m: contacts farther ahead than this are left to the Continuous stage.
+// m: contacts farther away than this are left to the Continuous stage.
 float MotionBeforeCast(const CollideStores& stores, const Pair& pair) {
     float motion = std::numeric_limits<float>::infinity();
     if (stores.bodies.dynamics[pair.bodyA].continuous)
@@ -115,10 +115,10 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     if (pair.pointCount > 0)
         NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
     const PairChange change = NoteTouching(stores, index, findings);
-    return TouchesSleeper(stores.bodies, pair) ? PairChange::WakesOther : change;
+    return TouchesSleepingBody(stores.bodies, pair) ? PairChange::WakesOther : change;
 }
 
-// What the next pairs need is fetched while this one is collided.
+// Prefetches data of the next pairs while this one is collided.
 void PrefetchAhead(const CollideStores& stores, uint32_t index) {
     constexpr uint32_t kAhead = 6;
     if (index + kAhead >= stores.pairs.pairs.size()) return;
@@ -136,7 +136,7 @@ void CollideAllActive(const CollideStores& stores, std::vector<PairChange>& chan
         for (uint32_t word = range.begin; word < range.end; ++word)
             active.VisitWord(word, [&](uint32_t index) {
                 PrefetchAhead(stores, index);
-                if (stores.pairs.pairs[index].isMore) return;  // comes with its pair
+                if (stores.pairs.pairs[index].isMore) return;  // handled with its pair
                 changes[index] = CollidePair(stores, changes, index, workers.findings[range.worker]);
             });
     });

@@ -1,6 +1,6 @@
-// A pair of a convex shape and a surface has as many manifolds as there are directions in which they touch. The first
-// is the pair's own; the others are pairs of their own, chained to it, which the later stages take for any other. They
-// stay, empty or not, as long as the pair does.
+// A pair of a convex shape and a surface has one manifold per direction of contact. The first is stored in the pair;
+// the others are additional pairs chained to it, which later stages treat like any other pair. They persist, empty or
+// not, as long as the pair does.
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/World/Materials.h>
@@ -33,7 +33,7 @@ void Write(const CollideStores& stores, const PairView& view, uint32_t index, co
     WriteManifold(stores, {pair, stores.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold);
 }
 
-// Of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
+// Motion of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
 Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
     const BodyStore& bodies = stores.bodies;
     const uint32_t a = view.pair.bodyA, b = view.pair.bodyB;
@@ -51,7 +51,7 @@ Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
     return Rotate(toPiece, InverseRotate(rotation, Vector3(velocity * stores.step.dt)));
 }
 
-// Gives each manifold the place whose features it shares, then any that is left.
+// Assigns each manifold to the slot with matching features, then the rest to free slots.
 void WriteManifolds(const CollideStores& stores, const PairView& view, uint32_t first, WorkerFindings& findings) {
     constexpr uint32_t kTaken = ~0u;
     std::vector<uint32_t>& places = findings.surfacePlaces;
@@ -123,7 +123,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
         if (pair.pointCount > 0)
             NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
         const PairChange change = NoteTouching(stores, index, findings);
-        wakes |= TouchesSleeper(stores.bodies, pair);
+        wakes |= TouchesSleepingBody(stores.bodies, pair);
         if (index == first) ofFirst = change;
         else changes[index] = change;
     });
@@ -146,7 +146,7 @@ void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::sp
         updates.changes.resize(std::max(updates.changes.size(), stores.pairs.pairs.size()), PairChange::None);
         Write(stores, ViewPair(stores.bodies, stores.colliders, stores.pairs, more.pair), index, more.contact);
         updates.changes[index] = NoteTouching(stores, index, workers.front());
-        if (TouchesSleeper(stores.bodies, stores.pairs.pairs[index]))
+        if (TouchesSleepingBody(stores.bodies, stores.pairs.pairs[index]))
             updates.changes[more.pair] = PairChange::WakesOther;
     }
 }

@@ -1,4 +1,4 @@
-// Where bodies and their colliders are, and which may collide: what searches and casts of the stages read.
+// Read-only view of bodies, colliders and collision filters for searches and casts of the stages.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/StepContext.h>
@@ -10,7 +10,7 @@ struct CollisionView {
     const StepContext& step;
     const BodyStore& bodies;
     const ColliderStore& colliders;
-    const JointStore& joints;  // some forbid contacts
+    const JointStore& joints;  // joints may disable contacts between their bodies
 };
 
 inline bool CanCollide(const CollisionView& view, uint32_t bodyA, uint32_t bodyB) {

@@ -1,6 +1,6 @@
-// Contacts that began get a color, those that ended lose it.
-// Serial, and in an order that depends on what touches what alone: the same colors for any number of threads, and
-// however coarse the bounds are by which pairs were found, so that a scene far out is solved as at the origin.
+// Assigns colors to contacts that began, and frees those of contacts that ended. Serial, in an order that depends only
+// on which bodies touch: the colors do not depend on the number of threads, nor on the rounding of bounds, so that a
+// scene far from the origin is solved like one at the origin.
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/Colors.h>
 
@@ -12,7 +12,7 @@ namespace fulcrum {
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
            std::vector<uint32_t>& began) {
     coloring.ReserveBodies(bodyCount);
-    began.reserve(pairs.pairs.capacity());  // so that no step of a settled world allocates
+    began.reserve(pairs.pairs.capacity());  // so that steps in steady state do not allocate
     began.clear();
     VisitChanges(changes, [&](uint32_t index) {
         const PairChange change = changes[index];
@@ -28,7 +28,7 @@ void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, 
             case PairChange::WakesOther: break;
         }
     });
-    // Indices of pairs tell when their bounds met.
+    // Not by pair index, which depends on when bounds began to overlap.
     std::sort(began.begin(), began.end(), [&](uint32_t x, uint32_t y) {
         const Pair &a = pairs.pairs[x], &b = pairs.pairs[y];
         return std::tie(a.colliderA, a.colliderB, a.features[0], x) <

@@ -8,11 +8,11 @@ namespace fulcrum {
 namespace {
 
 constexpr uint32_t kMostLevel = 31;
-// What lasts for fewer steps is an impact, or a pile that comes to rest.
+// A load must persist for this many steps; shorter ones are impacts, or piles that come to rest.
 constexpr int kStepsOfLoad = 8;
-// Of weights: with N substeps of P passes a load of r times what it lies on comes to rest where N^2 P > 2 r or so; the
-// sink of a cube of 1 m alone would allow 1.5 r. The rest of it keeps what rises when such a load is taken away within
-// 1 mm for loads of up to 200 times.
+// Safety factor of weights. With N substeps of P iterations, a load of r times its support's mass comes to rest if N^2
+// P > 2 r, approximately; the allowed penetration of a cube of 1 m alone would give 1.5 r. The rest limits the rebound
+// when such a load is removed to 1 mm for loads of up to 200 times.
 constexpr float kMargin = 1.75f;
 
 // 0 below 1, then 1 + floor(log2 x).
@@ -21,7 +21,7 @@ uint32_t LevelOf(float x) {
     return std::min((std::bit_cast<uint32_t>(x) >> 23) - 126, kMostLevel);
 }
 
-// The level that lasts, from that of this step; the latter is noted. isSure: it needs no further steps to tell.
+// Filters the level of this step over time and returns the persistent level. isSure: accept it at once.
 uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, bool forgets) {
     load.steps = level > load.level ? static_cast<uint8_t>(load.steps + 1) : uint8_t(0);
     const bool lasts = load.steps >= kStepsOfLoad || (isSure && level > load.level);
@@ -32,7 +32,7 @@ uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, bool forgets) {
     return static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
 }
 
-// Of lanes whose anchors are so far apart, m^2.
+// Level of lanes with this squared anchor distance, m^2.
 template <class Batch, class Real>
 bool NoteSquaredGaps(const Batch& batch, const Real& squared, const GapScale& scale, std::span<LoadLevel> gaps) {
     const Real part = Sqrt(squared) * Real(scale.perLevel);
@@ -55,7 +55,7 @@ Real SquaredSizeOf(const InverseMass<Real>& inverse) {
     return SquaredSize<Real>(inverse.mass, inverse.inertia.xx + inverse.inertia.yy + inverse.inertia.zz);
 }
 
-// Bodies with joints have no size of their own; those that were created in each other are no load.
+// Excludes jointed bodies, whose size is undefined, and bodies created inside each other, which are not a load.
 bool IsLeftOut(const BodyStore& bodies, const JointStore& joints, const Pair& pair) {
     const auto isLeftOut = [&](uint32_t body) { return joints.HasAny(body) || bodies.dynamics[body].crowded; };
     return isLeftOut(pair.bodyA) || isLeftOut(pair.bodyB);
@@ -65,7 +65,7 @@ bool IsLeftOut(const BodyStore& bodies, const JointStore& joints, const Pair& pa
 
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
                  const JointStore& joints, PairStore& pairs) {
-    if (!HeedsLoads(step.settings)) return;
+    if (!AdaptsToLoads(step.settings)) return;
     for (uint32_t index : began) {
         const Pair& pair = pairs.pairs[index];
         if (IsLeftOut(bodies, joints, pair)) continue;
@@ -99,12 +99,13 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
     if constexpr (!kFixedB) {
         inverseMass = Max(batch.inverseA.mass, batch.sideB.inverse.mass);
         squaredSize = Min(squaredSize, SquaredSizeOf(batch.sideB.inverse));
-        // While it sinks deeper than its impulses explain, it has not yet seen the weight that it is to carry: those of
-        // a heavy body on a light one grow as slowly as the light one takes its speed.
+        // If the penetration grows beyond what the impulses explain, the contact does not yet carry its final load:
+        // impulses of a heavy body on a light one build up slowly.
         Real depth = zero;
         for (int i = 0; i < batch.pointCount; ++i) {
             const auto& row = batch.rows[i];
-            const auto sinks = (row.separation < row.startSeparation) & (row.inverseResponse > zero);  // a point
+            const auto sinks =
+                (row.separation < row.startSeparation) & (row.inverseResponse > zero);  // only points in use
             depth = Max(depth, Select(sinks, -row.separation, zero));
         }
         unseen = depth * Real(scale.depthScale) > Real(2.0f) * force * inverseMass * Real(scale.softness);
@@ -115,8 +116,8 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
     }
     const Real sink = force * inverseMass * Real(scale.softness);
     const Real part = sink * Real(scale.perLevel) / Sqrt(squaredSize);
-    // Contacts under little load are looked at when loads are forgotten; each by itself, so that it does not matter
-    // which of them share a batch.
+    // Contacts with little load are only processed when levels may decrease; each lane independently, so that the
+    // result does not depend on the other lanes of a batch.
     const uint32_t loaded = scale.forgets ? ~0u : (part >= Real(1.0f)).ToBits();
     if (loaded == 0) return false;
     bool changed = false;

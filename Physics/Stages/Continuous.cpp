@@ -1,7 +1,7 @@
-// Continuous collision: what moved far in this step is cast along its path. Where it hits, it bounces there and then,
-// and goes on with what is left of the step. In rounds: all casts in parallel; then the hits in the order of their
-// times, as long as both bodies' sweeps still are those that were cast and no earlier one may change them
-// (ResolveHits.h); what changed its sweep, or lost its partner, is cast again.
+// Continuous collision: bodies that moved far in this step are cast along their paths. A hit is resolved at its time of
+// impact, and the bodies continue with the rest of the step. Works in rounds: all casts in parallel; then the hits in
+// order of time, as long as both bodies' sweeps are still those that were cast and no earlier hit may change them
+// (ResolveHits.h); bodies whose sweep changed, or that lost their hit partner, are cast again.
 #include <Fulcrum/Physics/Stages/ResolveHits.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
@@ -14,7 +14,7 @@ namespace fulcrum {
 
 namespace {
 
-// A body that hits something in each of so many rounds stays where it hit last until the next step.
+// A body that has a hit in each of this many rounds stays at its last hit until the next step.
 constexpr int kRounds = 64;
 
 // m: a body with continuous collision that moves less in a step is not cast.
@@ -27,14 +27,14 @@ float FreeMotionOf(const CollisionView& view, uint32_t body) {
     return least;
 }
 
-// Whether the fat bounds of a body's colliders, which reach ahead by the velocity that it had when the step began, hold
-// its whole path. Those that do not are noted, to be enlarged.
+// Whether the fat bounds of a body's colliders, which are extended by the velocity at the start of the step, contain
+// its whole path. Colliders for which they do not are recorded, to be enlarged.
 bool StaysInBounds(const CollisionView& view, const ConstraintColoring& coloring, uint32_t body, const Vector3& moved,
                    WorkerFindings& findings) {
     const float dt = view.step.dt;
     const float* a = view.bodies.poses[body].acceleration;
     const BodyCold& cold = view.bodies.cold[body];
-    // Pieces of a compound may be small.
+    // Children of a compound may be small.
     const float slack =
         cold.colliderCount == 1 && !cold.children ? 0.5f * SpeculativeDistance(view.step.settings, *cold.shape) : 0.0f;
     const bool flewAsForeseen =
@@ -49,7 +49,7 @@ bool StaysInBounds(const CollisionView& view, const ConstraintColoring& coloring
     return stays;
 }
 
-// Chooses how the candidates of a body that moved far are found.
+// Chooses how to find the candidates of a body that moved far.
 void LookAtBody(const CollisionView& view, const ConstraintColoring& coloring, SweepStore& sweeps, uint32_t body,
                 WorkerFindings& findings) {
     using SearchBy = SweepStore::SearchBy;
@@ -67,7 +67,8 @@ void LookAtBody(const CollisionView& view, const ConstraintColoring& coloring, S
     sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
-// What the solver moved out of its fat bounds is given bounds about its whole path, so that the trees find it there.
+// Colliders that the solver moved out of their fat bounds get bounds that contain the whole path, so that tree searches
+// find them.
 void EnlargeBounds(const BodyStore& bodies, ColliderStore& colliders, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = colliders.moved;
     const size_t first = moved.size();
@@ -83,7 +84,7 @@ void EnlargeBounds(const BodyStore& bodies, ColliderStore& colliders, std::span<
     std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
 }
 
-// Chooses whom to cast, and returns how many there are. view: with `colliders`, of which bounds are enlarged.
+// Selects the bodies to cast and returns their number. view: refers to `colliders`, whose bounds are enlarged.
 uint32_t FindFast(const CollisionView& view, const PairStore& pairs, const ConstraintColoring& coloring,
                   ColliderStore& colliders, SweepStore& sweeps, const StepWorkers& workers) {
     using SearchBy = SweepStore::SearchBy;
@@ -96,18 +97,18 @@ uint32_t FindFast(const CollisionView& view, const PairStore& pairs, const Const
     EnlargeBounds(view.bodies, colliders, workers.findings);
     const size_t slow = static_cast<size_t>(std::count(sweeps.searchBy.begin(), sweeps.searchBy.end(), SearchBy::None));
     const size_t fast = sweeps.searchBy.size() - slow;
-    // To look through all pairs for a few bodies would take longer than their searches.
+    // With few bodies, searching the trees is faster than going through all pairs.
     constexpr size_t kPairsPerSearch = 16;
     if (fast * kPairsPerSearch < pairs.active.Size())
         std::replace(sweeps.searchBy.begin(), sweeps.searchBy.end(), SearchBy::Pairs, SearchBy::Trees);
     return static_cast<uint32_t>(fast);
 }
 
-// Of the collider of a pair that is to be cast against the other; kNone: neither.
+// The collider of a pair that is to be cast against the other; kNone: neither.
 uint32_t CasterOf(const SweepStore& sweeps, const Pair& pair) {
     using SearchBy = SweepStore::SearchBy;
     const SearchBy a = sweeps.searchBy[pair.bodyA], b = sweeps.searchBy[pair.bodyB];
-    if (a == SearchBy::Trees || b == SearchBy::Trees) return SweepStore::kNone;  // finds the other by itself
+    if (a == SearchBy::Trees || b == SearchBy::Trees) return SweepStore::kNone;  // searches the trees itself
     return a == SearchBy::Pairs ? pair.colliderA : b == SearchBy::Pairs ? pair.colliderB : SweepStore::kNone;
 }
 
@@ -140,7 +141,7 @@ void CastActive(const CollisionView& view, const SweepStore& sweeps, const StepW
     });
 }
 
-// To those that wait.
+// Appends the workers' hits to those that wait.
 void GatherHits(std::span<WorkerFindings> workers, std::vector<SweepHit>& hits) {
     for (WorkerFindings& findings : workers) {
         hits.insert(hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
@@ -148,7 +149,7 @@ void GatherHits(std::span<WorkerFindings> workers, std::vector<SweepHit>& hits) 
     }
 }
 
-// The lists get room by the number of those that may need it.
+// Reserves the lists by the number of bodies that may need them.
 void ReserveLists(const BodyStore& bodies, size_t colliders, SweepStore& sweeps, std::span<WorkerFindings> workers) {
     const size_t users = bodies.continuousCount;
     sweeps.searchBy.reserve(bodies.Size());
@@ -169,7 +170,7 @@ void StartSweeps(const StepContext& step, const BodyStore& bodies, SweepStore& s
             sweeps.active.push_back(PlaceOf(step, bodies, sweeps, body));
 }
 
-// What a hit moved out of its fat bounds is found there by the casts of the others.
+// Enlarges the bounds of bodies that a hit moved out of them, so that other casts find them.
 void EnlargeBounds(BodyStore& bodies, ColliderStore& colliders, const Sweep& sweep) {
     const Pose end = sweep.PoseAt(1);
     if (!bodies.CanMove(sweep.body) || !IsFinite(end.position) || !IsFinite(end.rotation)) return;
@@ -184,7 +185,7 @@ void EnlargeBounds(BodyStore& bodies, ColliderStore& colliders, const Sweep& swe
     });
 }
 
-// Those that hits have changed, or left undecided, are searched in the next round.
+// Bodies whose sweeps were changed by hits or are undecided are cast in the next round.
 void EndRound(BodyStore& bodies, ColliderStore& colliders, SweepStore& sweeps) {
     for (uint32_t place : sweeps.next) {
         sweeps.swept[place].changed = false;

@@ -16,23 +16,24 @@ namespace fulcrum {
 
 namespace {
 
-// Bodies: so many that start in one step get places in a ball. Fewer move in random directions: bodies that are created
-// one by one at one point start a few at a time, and places in small balls would all be near that point.
+// At least this many bodies that start in one step get positions in a ball. Fewer move in random directions: bodies
+// that are created one by one at the same point start a few at a time, and positions in small balls would all be near
+// that point.
 constexpr size_t kFewestWithPlaces = 32;
-// s, for which bodies that should be at their places wait for room there before they move on.
+// s: time for which bodies at their positions wait for free space before they move on.
 constexpr float kPatience = 0.5f;
-// Bodies that started together have room when no more than one in so many of them overlaps another. The contacts
-// separate these few.
+// Bodies that started together are dispersed when at most one in this many overlaps another. Contacts separate the
+// rest.
 constexpr uint32_t kNearlyAll = 32;
 
-// Whether a body is one that can disperse at all.
+// Whether a body can disperse.
 bool MovesFreely(const BodyStore& bodies, uint32_t body) {
     const BodyDynamics& d = bodies.dynamics[body];
     const BodyCold& cold = bodies.cold[body];
     return cold.exists && !cold.removed && !cold.isSensor && d.awake && !d.frozen && d.motion == MotionType::Dynamic;
 }
 
-// Those of `bodies` of which isSo(body) is true, asked by all workers, in the same order.
+// Filters `bodies` by isSo(body) on all workers, preserving order.
 template <class Test>
 std::vector<uint32_t> SelectBodies(const StepWorkers& workers, std::span<const uint32_t> bodies, const Test& isSo) {
     const std::span<uint8_t> is = workers.scratch.Allocate<uint8_t>(bodies.size());
@@ -45,7 +46,7 @@ std::vector<uint32_t> SelectBodies(const StepWorkers& workers, std::span<const u
     return selected;
 }
 
-// Marks those of `candidates` that are to disperse, and returns them in ascending order. view: with `bodies`.
+// Marks the `candidates` that are to disperse, and returns them in ascending order. view: refers to `bodies`.
 std::vector<uint32_t> MarkDispersing(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups,
                                      std::span<const uint32_t> candidates, BodyStore& bodies,
                                      const StepWorkers& workers) {
@@ -54,7 +55,7 @@ std::vector<uint32_t> MarkDispersing(const CollisionView& view, const PairStore&
         return mayStart(body) && OverlapsManyDeeply(view, pairs, groups, body);
     });
     for (const uint32_t body : starting) bodies.dynamics[body].dispersing = true;
-    // Those that deeply overlap only a few of these would be in their way.
+    // Also includes bodies that deeply overlap only a few of these, since they would be in the way.
     for (std::vector<uint32_t> joining = starting; !joining.empty();) {
         joining = SelectBodies(workers, candidates, [&](uint32_t body) {
             return mayStart(body) && OverlapsDispersingDeeply(view, pairs, groups, body);
@@ -75,7 +76,7 @@ void RemoveDynamicPairs(const CollisionView& view, std::span<const uint32_t> bod
     });
 }
 
-// Where each body is to move. Bodies with joints move in one direction with those that they are connected to.
+// Computes where each body moves. Jointed bodies move in one direction with those connected to them.
 std::vector<DispersingBody> PlanDispersing(const CollisionView& view, const JointedGroups& groups,
                                            std::span<const uint32_t> bodies) {
     std::vector<DispersingBody> planned;
@@ -90,13 +91,14 @@ std::vector<DispersingBody> PlanDispersing(const CollisionView& view, const Join
     return planned;
 }
 
-// For the rest of this step: UpdateBounds has set accelerations already, with gravity for all but dispersing bodies.
+// Adjusts the acceleration for the rest of this step: UpdateBounds has already set it, with gravity for all but
+// dispersing bodies.
 void AddGravity(const SystemSettings& settings, BodyStore& bodies, uint32_t body, float factor) {
-    const Vector3 gravity = settings.gravity * (factor * bodies.dynamics[body].gravityFactor);
+    const Vector3 gravity = bodies.GravityOf(body, settings.gravity) * (factor * bodies.dynamics[body].gravityFactor);
     for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] += gravity[k];
 }
 
-// Removed bodies, and those that were put to sleep, frozen or made kinematic meanwhile.
+// Drops bodies that were removed, put to sleep, frozen or made kinematic meanwhile.
 void ForgetStopped(BodyStore& bodies, std::vector<DispersingBody>& all) {
     std::erase_if(all, [&](const DispersingBody& dispersing) {
         BodyDynamics& d = bodies.dynamics[dispersing.body];
@@ -105,7 +107,7 @@ void ForgetStopped(BodyStore& bodies, std::vector<DispersingBody>& all) {
     });
 }
 
-// Floors, walls and kinematic bodies that a body without a place touches reflect its direction.
+// Reflects the direction of a body without a target position at floors, walls and kinematic bodies that it touches.
 void Reflect(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
              DispersingBody& dispersing) {
     VisitImmovableContacts(bodies, colliders, pairs, dispersing.body, [&](uint32_t pair) {
@@ -138,11 +140,11 @@ void Push(const StepContext& step, const ColliderStore& colliders, const PairSto
 // The bodies that started to disperse in one step.
 struct StartedTogether {
     uint32_t count = 0, overlapping = 0;
-    bool isBlocked = false;  // one of them overlaps many
+    bool isBlocked = false;  // one of them overlaps many others
     bool HaveRoom() const { return !isBlocked && overlapping * kNearlyAll <= count; }
 };
 
-// By the step in which they started; overlaps[i]: whether all[i] overlaps another body.
+// Groups bodies by the step in which they started; overlaps[i]: whether all[i] overlaps another body.
 std::map<uint64_t, StartedTogether> GroupByStart(const CollisionView& view, const PairStore& pairs,
                                                  std::span<const DispersingBody> all, const JointedGroups& groups,
                                                  std::span<const uint8_t> overlaps) {
@@ -208,8 +210,8 @@ Vector3 OwnVelocity(const BodyStore& bodies, std::span<const DispersingBody> all
     return NoFasterThan(v - dispersing->push, dispersing->ownVelocity + Vector3(a[0], a[1], a[2]) * dt);
 }
 
-// Those that started together end together. A body whose time at its place is over ends by itself once it overlaps
-// no other.
+// Bodies that started together end together. A body whose waiting time is over ends by itself once it overlaps no
+// other.
 void EndDispersing(const StepContext& step, const JointStore& joints, const PairStore& pairs, BodyStore& bodies,
                    ColliderStore& colliders, std::vector<DispersingBody>& all, const StepWorkers& workers) {
     if (all.empty()) return;

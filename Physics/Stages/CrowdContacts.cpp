@@ -12,20 +12,21 @@ namespace fulcrum {
 
 namespace {
 
-// Parts of the sum of two shapes' inner radii.
+// Fractions of the sum of two shapes' inner radii.
 constexpr float kCenterOffset =
-    1e-3f;  // of coincident centers: a distance that gives a direction, and too short to be seen
-constexpr float kCrowdedOverlap = 0.01f;  // by less than this, as bodies at rest on each other do, nothing is crowded
-// Levels of crowded bodies: those that overlap others have the highest; of those that touch them, and were crowded
-// before, each has one less than its neighbor, as pushes reach it through others.
+    1e-3f;  // offset of coincident centers: large enough to define a direction, too small to be visible
+constexpr float kCrowdedOverlap = 0.01f;  // smaller overlaps, as of bodies at rest, do not count
+// Levels of crowded bodies: bodies that overlap others have the highest. Bodies that touch crowded ones and were
+// crowded before have one level less than their neighbor, since recovery velocities propagate.
 constexpr uint32_t kLevelBits = 2;
 constexpr uint8_t kOverlaps = 3;
-// The part of an overlap with an immovable body that is removed within a substep: all at once would throw bodies up.
+// The fraction of an overlap with an immovable body that is removed per substep: removing all at once would throw
+// bodies up.
 constexpr float kImmovableOverlapRemoved = 0.125f;
 
 struct DeepestPoint {
-    float separation = std::numeric_limits<float>::infinity();  // m, as the step began, below zero where it overlaps
-    float approach = 0;                                         // m/s, at which the two bodies' points close in
+    float separation = std::numeric_limits<float>::infinity();  // m, at the start of the step, negative for overlap
+    float approach = 0;                                         // m/s, approach speed of the two bodies' points
 };
 DeepestPoint DeepestPointOf(const BodyStore& bodies, const PairStore& pairs, uint32_t index, const Vector3& normal) {
     const Pair& pair = pairs.pairs[index];
@@ -48,7 +49,7 @@ DeepestPoint DeepestPointOf(const BodyStore& bodies, const PairStore& pairs, uin
     return deepest;
 }
 
-// Moves what the workers noted into one list, sorted: the same for any number of threads.
+// Merges the workers' lists into one, sorted, independent of the number of threads.
 void Gather(std::span<WorkerFindings> workers, std::vector<uint32_t> WorkerFindings::*list,
             std::vector<uint32_t>& all) {
     all.clear();
@@ -59,7 +60,8 @@ void Gather(std::span<WorkerFindings> workers, std::vector<uint32_t> WorkerFindi
     std::sort(all.begin(), all.end());
 }
 
-// A velocity changed by `push`, of which what only takes speed from it is whole, the rest no longer than `fastest`.
+// The velocity changed by `push`: the part that only reduces speed is applied in full, the rest is limited to
+// `fastest`.
 Vector3 LimitedPush(const Vector3& own, const Vector3& push, float fastest) {
     const float against = -Dot<float>(push, own), squared = LengthSquared(own);
     const Vector3 left = against > 0 ? Vector3(own * (1 - std::min(against / squared, 1.0f))) : own;
@@ -68,7 +70,7 @@ Vector3 LimitedPush(const Vector3& own, const Vector3& push, float fastest) {
     return left + rest;
 }
 
-// How often the most frequent of numbers occurs; they are sorted.
+// How often the most frequent of the sorted numbers occurs.
 size_t MostRepeated(std::span<const uint32_t> numbers) {
     size_t most = 0;
     for (size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
@@ -109,7 +111,7 @@ void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const 
     const float radii = pair.shapeA->InnerRadius() + (pair.fixedB ? 0.0f : pair.shapeB->InnerRadius());
     const DeepestPoint deepest = DeepestPointOf(bodies, pairs, index, ContactNormal(bodies, pairs, index));
     const bool overlaps = deepest.separation < -kCrowdedOverlap * radii;
-    // What closes in fast is an impact, and leaves its speeds.
+    // A fast approach is an impact, not a placement, and is solved normally.
     const bool wasPut = isPlaced && overlaps && deepest.approach < settings.depenetrationSpeed;
     const auto note = [&](uint32_t body, uint8_t level, uint8_t levelOfOther) {
         if (level == 0 && !(wasPut && !joints.HasAny(body))) return;

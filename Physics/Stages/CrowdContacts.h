@@ -1,8 +1,8 @@
-// Contacts of bodies that were put into each other: which way coincident ones are pushed, and which bodies are crowded.
-// Crowded are bodies that disperse (Crowd.h), and those that overlap what they were created, placed or grown in, or
-// still touch such a body. Their contacts push at depenetrationSpeed at most, and they keep no speed of that: many
-// pushes add up, and relaxing passes leave a part of it in the velocities. Used by Collide, Prepare, Solve and Store,
-// for different bodies from any number of threads, but for GatherCrowd.
+// Contacts of bodies that were placed inside each other: separating directions of coincident ones, and which bodies are
+// crowded. Crowded bodies are those that disperse (Crowd.h), those that overlap a body since they were created, placed
+// or grown, and those that still touch such a body. Their contacts separate them at depenetrationSpeed at most, and
+// they keep none of that velocity: many contacts add up, and relax iterations leave a part of it in the velocities.
+// Used by Collide, Prepare, Solve and Store, for different bodies from any number of threads, but for GatherCrowd.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/StepState.h>
@@ -11,26 +11,27 @@
 
 namespace fulcrum {
 
-// Where the centers of two convex shapes coincide, no direction is better than another to separate them along. Then
-// each body counts as a thousandth of the inner radii away from where it is, towards its PointInBall: all pairs of a
-// crowd agree about that, and its bodies are pushed out in all directions. Returns `bInA`, that of the shapes, with
-// that offset where it is needed.
+// If the centers of two convex shapes coincide, their separating direction is undefined. Then each body is treated as
+// displaced by a thousandth of the inner radii towards its PointInBall: this is consistent for all pairs of a crowd,
+// and its bodies are pushed out in all directions. Returns `bInA`, the relative pose of the shapes, with that offset if
+// needed.
 RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& colliders, const Pair& pair,
                                  const RelativePose& bInA);
 
-// Notes in `findings` which bodies of a pair overlap deeply, and which are crowded, or still are. bInA: of the shapes.
+// Records in `findings` which bodies of a pair overlap deeply, and which are crowded or still are. bInA: relative pose
+// of the shapes.
 void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
                  const PairStore& pairs, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
-// Gathers what the workers noted into `crowd`, and marks the crowded bodies. One thread.
+// Merges the workers' findings into `crowd`, and marks the crowded bodies. One thread.
 void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
 
-// Limits the velocity with which a dispersing body is about to move for h seconds: contacts and joints change it by no
-// more than contactPushSpeed, and it is not pressed into immovable bodies, whose soft contacts would yield to the
-// pushes of so many.
+// Limits the velocity with which a dispersing body moves for the next h seconds: contacts and joints change it by at
+// most contactPushSpeed, and it is not pressed into immovable bodies, whose soft contacts would yield to so many
+// bodies.
 void LimitPush(const SystemSettings& settings, const ColliderStore& colliders, const PairStore& pairs,
                BodyStore& bodies, uint32_t body, float h);
 
-// `v` with at most the length of `limit`: pushes leave a crowded body no more speed than it had without them.
+// `v` clamped to the length of `limit`: recovery does not increase the speed of a crowded body.
 inline Vector3 NoFasterThan(const Vector3& v, const Vector3& limit) {
     const float squared = LengthSquared(v), most = LengthSquared(limit);
     return squared > most ? Vector3(v * std::sqrt(most / squared)) : v;

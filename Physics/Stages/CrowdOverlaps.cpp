@@ -73,7 +73,7 @@ bool OverlapsAtLeast(const CollisionView& view, const PairStore& pairs, const Jo
                (pairs.Find(collider, index) != PairStore::kNone || ListenerAllows(view, body, other));
     };
     VisitColliders(view.bodies, view.colliders, body, [&](uint32_t collider) {
-        float distance = 0;  // below zero ends the search
+        float distance = 0;  // negative ends the search
         if (count == kCount) return;
         view.colliders.movingTree.VisitNear(TightBoundsOf(view.bodies, view.colliders, collider), distance,
                                             [&](uint32_t index) {
@@ -92,7 +92,7 @@ JointedGroups::JointedGroups(uint32_t bodyCount, const JointStore& joints, Scrat
     roots_ = scratch.Allocate<uint32_t>(bodyCount);
     UnionFind sets(roots_);
     for (const Joint& joint : joints.joints)
-        if (joint.exists && joint.enabled && !joint.still[0] && !joint.still[1])
+        if (joint.exists && joint.enabled && !joint.fixed[0] && !joint.fixed[1])
             sets.Unite(joint.body[0], joint.body[1]);
     for (uint32_t body = 0; body < roots_.size(); ++body) roots_[body] = sets.Find(body);
 }

@@ -13,15 +13,17 @@ namespace fulcrum {
 
 namespace {
 
-// The part of the ball's volume that bodies fill, as spheres about them. Spheres that touch fill 0.74 of it on the
-// lattice of places; with 0.6 their surfaces are 7 % of a diameter apart.
+// The fraction of the ball's volume filled by the bounding spheres of bodies. Touching spheres on the lattice fill 0.74
+// of it; with 0.6 their surfaces are 7 % of a diameter apart.
 constexpr double kPacking = 0.6;
-// Radii of the ball. Bodies whose centers all are this near to their common middle move to places about that middle.
+// In radii of the ball. Bodies whose centers are all this close to their common center move to positions about that
+// center.
 constexpr double kNear = 1.5;
-// Radii of the ball: no place is farther from its middle, and no floor or wall beyond is looked for. Half the ball cut
-// off by a floor needs 1.26.
+// In radii of the ball: largest distance of positions from its center; floors and walls farther away are ignored. A
+// floor that cuts off half the ball needs 1.26.
 constexpr double kFarthestPlace = 2;
-// Places are as large as all bodies but one in so many need; making room for a few large ones would spread all others.
+// The lattice spacing fits all bodies except the largest one in this many; sizing it for a few large ones would spread
+// all others.
 constexpr size_t kLargeOnes = 32;
 
 // The finalizer of MurmurHash3: every bit of the input changes about half of the bits of the result.
@@ -33,15 +35,15 @@ uint64_t Mix(uint64_t x) {
     return x ^ x >> 33;
 }
 
-// A ball that is to be filled with bodies.
+// The ball to be filled with bodies.
 struct Ball {
     Position middle;
     double radius;  // m
-    double margin;  // m: the radius of a body, by which centers stay away from floor and walls
+    double margin;  // m: the radius of a body; centers keep this distance from floor and walls
 };
 
-// Finds the floor or wall that a ray from the ball's middle hits first, as `body` collides with it. False: it hits
-// none.
+// Finds the first floor or wall, among those with which `body` collides, that a ray from the ball's center hits.
+// Returns false if there is none.
 bool FindLimit(const CollisionView& view, uint32_t body, const Ball& ball, const Vector3& ray, PlaceLimit& limit) {
     const RayCaster caster({ball.middle, ray});
     RayHit closest;
@@ -54,7 +56,7 @@ bool FindLimit(const CollisionView& view, uint32_t body, const Ball& ball, const
             if (!caster.CastClosest(*view.colliders.shapes[index].shape,
                                     ColliderPoseOf(view.bodies, view.colliders, index), {}, hit))
                 return;
-            // Of equally near ones that of the lowest index, whatever the shape of the tree.
+            // Ties are resolved by the lowest index, independent of the tree's structure.
             if (std::pair(hit.fraction, index) >= std::pair(closest.fraction, met) && met != ~0u) return;
             closest = hit;
             met = index;
@@ -65,7 +67,7 @@ bool FindLimit(const CollisionView& view, uint32_t body, const Ball& ball, const
     return met != ~0u;
 }
 
-// Looks for floor and walls in 26 directions.
+// Finds floors and walls in 26 directions.
 std::vector<PlaceLimit> FindLimits(const CollisionView& view, uint32_t body, const Ball& ball) {
     std::vector<PlaceLimit> limits;
     for (int x = -1; x <= 1; ++x)
@@ -89,9 +91,9 @@ float NearlyLargestRadius(const CollisionView& view, std::span<const uint32_t> b
     return *large;
 }
 
-// Reorders bodies and places so that body i gets place i, on its side of the others, and few cross: along the axis on
-// which places extend farthest the lower half of the bodies gets the lower half of the places, and so on within each
-// half. Equal coordinates are ordered by the bodies' indices.
+// Reorders bodies and positions so that body i gets position i, with few crossing paths: along the axis of the largest
+// extent the lower half of the bodies gets the lower half of the positions, recursively. Equal coordinates are ordered
+// by the bodies' indices.
 void MatchPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::span<Vector3> places) {
     if (bodies.size() < 2) return;
     Vector3 lower = places[0], upper = places[0];
@@ -124,19 +126,18 @@ Vector3 PointInBall(uint32_t body) {
     }
 }
 
-// Points of a face-centered cubic lattice, integers of which the sum is even, that are nearest to the middle of one of
-// its cubes.
+// Points of a face-centered cubic lattice (integers with an even sum) nearest to the center of one of its cubes.
 std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits) {
     struct Point {
-        int32_t square, x, y, z;  // twice the point as seen from that middle, and the squared length of that
+        int32_t square, x, y, z;  // twice the point relative to that center, and its squared length
         auto operator<=>(const Point&) const = default;
         Vector3 Place() const {
             return Vector3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) * 0.5f;
         }
     };
     constexpr double kUnitBall = 4.18879;  // its volume
-    const double whole = std::cbrt(
-        2 * count / kUnitBall);  // the radius, in units of the lattice, which has half a point per unit of volume
+    const double whole =
+        std::cbrt(2 * count / kUnitBall);  // radius in lattice units; the lattice has half a point per unit volume
     const int reach = static_cast<int>(limits.empty() ? whole : kFarthestPlace * whole) + 2;
     const float scale = static_cast<float>(1 / whole);
     std::vector<Point> points;

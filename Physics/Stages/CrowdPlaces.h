@@ -1,5 +1,5 @@
-// Where the bodies of a crowd disperse to (Crowd.h): places in a ball that has room for all, as far as floor and walls
-// allow. Used by StartDispersing; PointInBall by contacts of coincident bodies, too. One thread.
+// Target positions of dispersing bodies (Crowd.h) in a ball large enough for all, as far as floors and walls allow.
+// Used by StartDispersing; PointInBall also by contacts of coincident bodies. One thread.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/CollisionView.h>
@@ -10,27 +10,25 @@
 
 namespace fulcrum {
 
-// m/s, of the bodies that move to the surface of the ball; all others are slower. Faster than contacts push, as nothing
-// is in their way.
+// m/s, of bodies that move to the surface of the ball; all others are slower. Faster than penetration recovery, since
+// they do not collide.
 inline float DispersingSpeed(const SystemSettings& settings) { return 1.5f * settings.contactPushSpeed; }
 
-// A point in the unit ball that looks random and follows from the body's index alone; all indices together fill the
-// ball uniformly.
+// A pseudo-random point in the unit ball computed from the body's index; the points of all indices fill the ball
+// uniformly.
 Vector3 PointInBall(uint32_t body);
 
-// A floor or wall, seen from the middle of a ball: allows places with normal . place >= offset.
+// A floor or wall relative to the center of a ball: allows positions with normal . position >= offset.
 struct PlaceLimit {
     Vector3 normal;
     float offset;  // in radii of the ball
 };
-// `count` points of a lattice that fill a ball about the origin as densely as equal spheres can be packed, from the
-// innermost to the outermost. The ball's radius is 1 without limits, and larger where these cut parts of it off; empty:
-// they leave too little.
+// `count` points of a densest sphere packing in a ball about the origin, from the innermost to the outermost. The
+// ball's radius is 1 without limits, larger if limits cut off parts of it. Empty if they leave too little space.
 std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits = {});
 
-// Adds an entry to `dispersing` for each of `bodies`, none of which has joints: their places, and how long they take to
-// get there. Bodies near one point get places about their common middle, others about where they are. Reorders
-// `bodies`.
+// Adds an entry to `dispersing` for each of `bodies`, none of which has joints: its target position and travel time.
+// Bodies near one point get positions about their common center, others about their own position. Reorders `bodies`.
 void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::vector<DispersingBody>& dispersing);
 
 }  // namespace fulcrum

@@ -1,5 +1,5 @@
-// How a group of islands is solved: the system's settings, or more where its joints ask for it. Used by Prepare, Solve,
-// Store.
+// The solver settings of a group of islands: the system's, or more effort if its joints or loads ask for it. Used by
+// Prepare, Solve, Store.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
@@ -12,24 +12,25 @@ namespace fulcrum {
 
 struct Effort {
     SolverSettings solver;
-    float substepDt;     // s
-    bool hasTrees;       // see RunTrees
-    float impulseScale;  // records hold impulses of the system's substeps: times this, they are those of the group's
+    float substepDt;  // s
+    bool hasTrees;    // see RunTrees
+    float
+        impulseScale;  // scales impulses in records, which are those of the system's substeps, to the group's substeps
     ContactSolveSettings contacts;
     JointSolveSettings joints;
 };
 
-// Hz, the largest frequency of the springs that push overlaps and errors of joints away, for a substep of h seconds in
-// which so many passes are solved. Above (w h)^2 = passes the slow modes of stacks and chains, of which a pass resolves
-// little, gain energy (Docs/Step.md derives it); this is (w h)^2 = 0.88 passes.
+// Hz, largest frequency of soft contacts and joints for a substep of h seconds with this many iterations. Above (w h)^2
+// = iterations the slow modes of stacks and chains, of which an iteration resolves little, gain energy (derived in
+// Docs/Step.md); this is (w h)^2 = 0.88 iterations.
 inline float StiffestFrequency(const SolverSettings& solver, float h) {
     return std::sqrt(static_cast<float>(solver.velocityIterations + solver.positionIterations) / 45.0f) / h;
 }
 
-// The damping ratio, at least, of springs of a frequency, Hz, that push overlaps apart. Stiffer springs of more
-// substeps would push faster, and leave more of that in the velocities: they are damped more, so that they push away a
-// hundredth of an overlap in 0.1 ms at most, as with four substeps; but not so much that they forget almost nothing of
-// their impulses, and slow modes are hardly damped.
+// Minimum damping ratio of soft contacts with this frequency, Hz. The stiffer springs of more substeps would separate
+// bodies faster and leave more of that in the velocities. So they are damped more, such that they remove at most a
+// hundredth of an overlap in 0.1 ms, as with four substeps; but not so much that impulseScale becomes tiny and slow
+// modes are hardly damped.
 inline float LeastDampingRatio(float frequency, float h) {
     constexpr float kMostPushRate = 100;  // 1/s
     constexpr float kMost = 2.5f;
@@ -37,10 +38,10 @@ inline float LeastDampingRatio(float frequency, float h) {
     return std::min(0.5f * (w / kMostPushRate - h * w), kMost);
 }
 
-// The part of a tree's errors that a substep corrects.
+// The fraction of a tree's errors that a substep corrects.
 inline constexpr float kTreePush = 0.5f;
 
-// The part of the system's substep that SolverGroup::stiffness says.
+// SolverGroup::stiffness counts powers of this factor of the system's substep.
 inline constexpr float kStiffnessStep = 0.957603281f;  // 2^(-1/16)
 inline float SubstepOfStiffness(uint32_t stiffness) {
     float part = 1;
@@ -94,7 +95,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     joints.impulseScale = step.impulseScale * effort.impulseScale;
     joints.pushRate = push.pushRate;
     joints.softness = push.softness;
-    // Trees of joints are exact, and pushed.
+    // Trees are solved exactly, and corrected by velocities.
     const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte && !group.HasTrees();
     if (!corrects) effort.solver.positionCorrection = PositionCorrection::SoftRelax;
     contacts.relaxes = !corrects && effort.solver.positionIterations > 0;
@@ -108,7 +109,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
         joints.softness = {};
     }
     if (group.HasTrees()) {
-        // Softness would take back part of what the trees solved.
+        // Softness would undo part of the direct solution.
         joints.pushRate = kTreePush / h;
         joints.softness = {1, 0};
     }

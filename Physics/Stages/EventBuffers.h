@@ -1,5 +1,5 @@
-// What the events of a step are listed in, and what was said of bodies in the last one. Written by the stages that list
-// events; the arrays are the user's until the next step.
+// Buffers of a step's events, and the reported state of bodies in the last step. Written by the stages that list
+// events; the arrays are visible to the user until the next step.
 #pragma once
 
 #include <Fulcrum/Physics/StepEvents.h>
@@ -10,31 +10,31 @@
 
 namespace fulcrum {
 
-// An event before its manifolds are looked up.
+// An event without its manifolds.
 struct ListedContact {
     BodyId bodyA, bodyB;
     uint32_t childA = 0, childB = 0;
     ContactEvent::Kind kind = ContactEvent::Kind::Begin;
     float time = 1;
-    uint32_t source = 0;  // of Begin and Stay the pair, of a Hit its place in SweepStore::reported
+    uint32_t source = 0;  // for Begin and Stay the pair, for Hit the index in SweepStore::reported
     uint32_t firstManifold = 0, manifoldCount = 0;
 };
 
-// A place in the order of events.
+// Sort key of an event.
 struct ContactOrder {
     uint64_t bodies;  // indices, A << 32 | B
-    uint32_t listed;  // place in EventBuffers::listed
+    uint32_t listed;  // index in EventBuffers::listed
 };
 
-// A body as the last step ended.
+// State of a body at the end of the last step.
 struct ReportedBody {
     Position position = Position::Zero();  // m, of the center of mass
     Quaternion rotation{};
-    uint32_t generation = ~0u;  // of another one: nothing is known of the body
+    uint32_t generation = ~0u;  // if it differs from the body's: unknown
     bool isAwake = false;
 };
 
-// Whether the contacts of two bodies are events. reports: BodyStore's.
+// Whether the contacts of two bodies are reported. reports: BodyStore's.
 inline bool AreReported(const IndexSet& reports, uint32_t bodyA, uint32_t bodyB) {
     return reports.Contains(bodyA) || reports.Contains(bodyB);
 }
@@ -48,7 +48,7 @@ struct EventBuffers {
     std::vector<ContactEvent::Manifold> manifolds;
 
     std::vector<ReportedBody> bodies;              // by index; empty without EventSettings::bodies
-    std::vector<uint64_t> awakeWords, movedWords;  // bodies as bits
+    std::vector<uint64_t> awakeWords, movedWords;  // one bit per body
     std::vector<BodyId> awake, moved, woke, fellAsleep;
 
     std::vector<BrokenJoint> broken;

@@ -1,6 +1,6 @@
-// Whether a pair touches is decided by what Solve noted of its contacts; of a pair with a surface, by all manifolds
-// together. What was said of a pair last stays with it while it sleeps, and ends with it. Events are listed by any
-// worker and sorted: each pair of pieces has one at most, but for hits.
+// Whether a pair touches is decided by the notes of its contacts from Solve; for a pair with a surface, by all
+// manifolds together. A pair keeps its reported state while it sleeps. Events are listed by any worker and then sorted;
+// except for hits, each pair of colliders has at most one.
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
@@ -14,11 +14,11 @@ namespace {
 
 using EventKind = ContactEvent::Kind;
 
-// What touched goes on until it is this part of the speculative distance apart: what jitters does not end in every
-// other step.
-constexpr float kEndPart = 0.25f;
+// Hysteresis: a contact ends when it is farther apart than this fraction of the speculative distance, so that jitter
+// does not end it in every other step.
+constexpr float kEndFraction = 0.25f;
 
-// What contact events are made from.
+// Inputs of contact events.
 struct ContactSources {
     const SystemSettings& settings;
     const BodyStore& bodies;
@@ -27,16 +27,16 @@ struct ContactSources {
     std::span<const ContactNote> notes;
 };
 
-// m, within which points touch that do not press. before: the pair touched in the last step.
+// m: points without impulse touch within this separation. before: the pair touched in the last step.
 float TouchDistance(const ContactSources& from, uint32_t first, bool before) {
-    return before ? kEndPart * SpeculativeDistance(from.settings, from.pairs.pairs[first]) : 0.0f;
+    return before ? kEndFraction * SpeculativeDistance(from.settings, from.pairs.pairs[first]) : 0.0f;
 }
 
 ContactView ViewOf(const ContactSources& from, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
     return ViewSolvedContact(from.bodies, from.colliders, from.pairs, index, room);
 }
 
-// Whether a contact did anything. Where it comes apart friction may be left alone.
+// Whether a contact had an impulse. When it separates, only friction may be left.
 bool HasImpulse(const ContactNote& note) {
     const auto isAny = [](std::span<const float> impulses) {
         return std::ranges::any_of(impulses, [](float impulse) { return impulse != 0; });
@@ -44,11 +44,12 @@ bool HasImpulse(const ContactNote& note) {
     return isAny(note.impulse) || isAny(note.frictionImpulse) || note.twistImpulse != 0;
 }
 
-// Whether a manifold did anything, or has points no farther apart than `most`, m.
+// Whether a manifold had an impulse, or has points with a separation of at most `most`, m.
 bool Touches(const ContactSources& from, uint32_t index, float most) {
     const Pair& pair = from.pairs.pairs[index];
-    if (!pair.touching || pair.onSeam || pair.pointCount == 0) return false;
-    if (HasImpulse(from.notes[index])) return true;
+    if (pair.onSeam || pair.pointCount == 0) return false;
+    if (!pair.touching && !from.pairs.records[index].Has(ContactRecord::kSensed)) return false;
+    if (pair.touching && HasImpulse(from.notes[index])) return true;
     ContactView::Point room[ContactRecord::kMaxPoints];
     return std::ranges::any_of(ViewOf(from, index, room).points,
                                [&](const ContactView::Point& point) { return point.separation <= most; });
@@ -67,7 +68,7 @@ bool IsSwapped(const BodyStore& bodies, uint32_t first, uint32_t second) {
     return isDynamic(first) && isDynamic(second) ? second < first : !isDynamic(first);
 }
 
-// The ids of an event, or of what is kept of it.
+// Sets the ids of an event, or of its stored state.
 template <class Event>
 void SetSides(const ContactSources& from, uint32_t colliderA, uint32_t colliderB, Event& event) {
     const auto bodyOf = [&](uint32_t collider) { return from.colliders.colliders[collider].body; };
@@ -83,7 +84,7 @@ ListedContact ListedOf(const ReportedContact& reported, EventKind kind, uint32_t
     return {reported.bodyA, reported.bodyB, reported.childA, reported.childB, kind, 1, pair, 0, manifolds};
 }
 
-// Decides whether an active pair touches, and notes its event, if it has one; returns whether it has.
+// Decides whether an active pair touches, and records its event, if any; returns whether there is one.
 bool LookAtPair(const ContactSources& from, uint32_t index, ReportedContact& reported) {
     const Pair& pair = from.pairs.pairs[index];
     if (pair.isMore) return false;
@@ -118,7 +119,7 @@ void ListActive(const ContactSources& from, std::span<ReportedContact> reported,
     }
 }
 
-// Pairs of bodies that were taken apart while both slept are not active again: nothing else tells that they ended.
+// Pairs of bodies that were separated while both slept do not become active again, so their end is detected here.
 void ListApart(const ContactSources& from, std::span<ReportedContact> reported, std::vector<ListedContact>& listed) {
     const auto areNear = [&](const Pair& pair) {
         const std::vector<Collider>& all = from.colliders.colliders;
@@ -150,7 +151,7 @@ void ListHits(const ContactSources& from, std::span<const ReportedHit> hits, std
     }
 }
 
-// The order of events: by what most differ in, then by all of it.
+// Sorts events: by the indices of bodies, then by the full key.
 void Sort(std::span<const ListedContact> listed, std::vector<ContactOrder>& order) {
     order.clear();
     for (uint32_t i = 0; i < listed.size(); ++i)
@@ -164,8 +165,8 @@ void Sort(std::span<const ListedContact> listed, std::vector<ContactOrder>& orde
     });
 }
 
-// Gives events room for their manifolds; returns of how many. What ended and began again in the same step, as its pair
-// was made anew, stayed: one of the two is dropped from the order.
+// Assigns the manifolds' ranges to events; returns the number of manifolds. If a contact ended and began in the same
+// step, because its pair was recreated, it persists: one of the two events is dropped.
 uint32_t Place(bool keepsStays, std::span<ListedContact> listed, std::vector<ContactOrder>& order) {
     const auto areSame = [](const ListedContact& a, const ListedContact& b) {
         return std::tie(a.bodyA, a.bodyB, a.childA, a.childB) == std::tie(b.bodyA, b.bodyB, b.childA, b.childB);
@@ -191,22 +192,23 @@ uint32_t Place(bool keepsStays, std::span<ListedContact> listed, std::vector<Con
     return manifolds;
 }
 
-// Turns it to the other side.
+// Swaps A and B.
 void Swap(ContactEvent::Manifold& manifold) {
     manifold.normal = -manifold.normal;
     manifold.frictionImpulse = -manifold.frictionImpulse;
 }
 
-// Of one that touches: its points as the step ended, its normal as it was solved; raises the speed to the fastest
-// approach of its points.
+// The event manifold of a touching contact: points at the end of the step, normal as solved; raises the speed to the
+// largest approach speed of its points.
 ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, float most, float& approachSpeed) {
     const Pair& pair = from.pairs.pairs[index];
-    const ContactNote& note = from.notes[index];
+    static constexpr ContactNote kNone{};  // of contacts that are not solved
+    const ContactNote& note = pair.touching ? from.notes[index] : kNone;
     ContactView::Point room[ContactRecord::kMaxPoints];
     const ContactView view = ViewOf(from, index, room);
     const Position normal = view.normal.cast<double>();
     ContactEvent::Manifold manifold{
-        .normal = Vector3(note.normal[0], note.normal[1], note.normal[2]),
+        .normal = pair.touching ? Vector3(note.normal[0], note.normal[1], note.normal[2]) : view.normal,
         .frictionImpulse = Vector3(note.frictionImpulse[0], note.frictionImpulse[1], note.frictionImpulse[2]),
         .twistImpulse = note.twistImpulse,
         .triangle = pair.triangle,
@@ -221,13 +223,13 @@ ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, fl
         }
     };
     addWithin(most);
-    // Friction alone was left.
+    // Only friction was left.
     if (manifold.pointCount == 0)
         addWithin(std::ranges::min(view.points, {}, &ContactView::Point::separation).separation);
     return manifold;
 }
 
-// Writes an event and its manifolds, for which there is room.
+// Writes an event and its manifolds to their ranges.
 void Fill(const ContactSources& from, std::span<const ReportedHit> hits, const ListedContact& listed,
           std::span<ContactEvent::Manifold> manifolds, ContactEvent& event) {
     event = {.bodyA = listed.bodyA,

@@ -11,22 +11,22 @@ namespace fulcrum {
 
 namespace {
 
-constexpr uint32_t kLargeIsland = 768;  // constraints: from here on all workers solve it together
-constexpr uint32_t kSmallGroup = 192;   // constraints that a group of small islands has at least, about 60 KB of rows
+constexpr uint32_t kLargeIsland = 768;  // constraints: larger islands are solved by all workers together
+constexpr uint32_t kSmallGroup = 192;  // minimum number of constraints of a group of small islands, about 60 KB of rows
 constexpr uint32_t kColors = ConstraintColoring::kColors;
 
 using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
 
-// A link under the pull of a load swings like a string, the faster the heavier the load: as its square root. Substeps
-// must resolve that, or the chain whips itself apart, however exact its joints. Measured on 16 links of 0.5 m.
+// A chain under load vibrates like a string, with a frequency proportional to the square root of the load. Substeps
+// must resolve that, or the chain becomes unstable, however exact its joints. Measured on 16 links of 0.5 m.
 int SubstepsUnder(float load) { return std::min(static_cast<int>(std::ceil(0.8f * std::sqrt(load))), 64); }
 
 int SubstepsOf(float rope, int usual) {
     return std::min(static_cast<int>(std::ceil(rope * static_cast<float>(usual))), 64);
 }
 
-// The substeps that trees and ropes of an island ask for.
+// The substeps required by trees and ropes of an island.
 struct JointSubsteps {
     int substeps = 0;
     uint32_t body = ~0u;
@@ -42,7 +42,7 @@ void SetEffort(SolverGroup& group, const IslandEffort& effort, const JointSubste
     group.stiffness = effort.stiffness == 0 ? group.wantedStiffness : std::min(effort.stiffness, group.wantedStiffness);
 }
 
-// By root; only what makes an island have a group of its own.
+// By root; only efforts for which an island gets a group of its own.
 std::span<const IslandEffort> EffortsOf(const std::vector<SavedEffort>& saved, const BodyStore& bodies, UnionFind& sets,
                                         ScratchArena& scratch) {
     std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(bodies.awake.size());
@@ -75,7 +75,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     std::span<uint32_t> sizes = scratch.Allocate<uint32_t>(count);
     std::fill(sizes.begin(), sizes.end(), 0u);
     const auto unite = [&](uint32_t, const Entry& entry) {
-        if (!entry.stillA && !entry.stillB) sets.Unite(placeOf(entry.bodyA), placeOf(entry.bodyB));
+        if (!entry.fixedA && !entry.fixedB) sets.Unite(placeOf(entry.bodyA), placeOf(entry.bodyB));
     };
     VisitEntries(coloring, Kind::Moving, unite);
     VisitEntries(coloring, Kind::Joint, unite);
@@ -92,7 +92,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         saved ? EffortsOf(*saved, bodies, sets, scratch)
               : FindEfforts(step, bodies, coloring, joints, pairs, sizes,
                             step.settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, sets, scratch);
-    // By root; without room where there are neither trees nor ropes.
+    // By root; empty if there are neither trees nor ropes.
     const size_t room = trees.trees.empty() && trees.ropes.empty() ? 0 : count;
     std::span<JointSubsteps> ofTrees = scratch.Allocate<JointSubsteps>(room),
                              ofRopes = scratch.Allocate<JointSubsteps>(room);
@@ -109,26 +109,26 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     Islands result;
     result.groupOf = scratch.Allocate<uint32_t>(count);
     groups.assign(1, {.isLarge = true});
-    uint32_t inGroup = kSmallGroup;  // so that the first small island opens a group
+    uint32_t inGroup = kSmallGroup;  // so that the first small island starts a group
     uint32_t open = 0;
     IslandEffort overflowing;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t root = sets.Find(i);
         if (root != i) {
-            result.groupOf[i] = result.groupOf[root];  // the root is the smallest, so it has its group
+            result.groupOf[i] = result.groupOf[root];  // the root is the smallest index, so its group is known
             continue;
         }
         result.groupOf[i] = Islands::kNone;
         if (sizes[i] == 0) continue;
         ++result.islands;
-        // What fits no color is solved with the first group.
+        // Constraints without a color are solved with the first group.
         const bool isOverflowing = !overflows.empty() && overflows[i];
         const bool large = sizes[i] >= kLargeIsland || isOverflowing;
         const JointSubsteps tree = room > 0 ? ofTrees[i] : JointSubsteps{},
                             rope = room > 0 && !large ? ofRopes[i] : JointSubsteps{};
         const bool hasTree = tree.substeps > 0;
         const IslandEffort& effort = efforts[i];
-        // One worker solves an island of its own: too slow for a large one that did not ask for it.
+        // A group of one island is solved by one worker: too slow for a large island, unless required.
         if (!isOverflowing && (effort.least.IsAny() || rope.substeps > 0 || (hasTree && !large))) {
             result.groupOf[i] = static_cast<uint32_t>(groups.size());
             groups.push_back({.isLarge = large && !hasTree});

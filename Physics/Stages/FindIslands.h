@@ -1,4 +1,4 @@
-// Islands as the solver groups them, and what the parts of BuildIslands share.
+// Islands and the solver's groups of them, and helpers shared by the parts of BuildIslands.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
@@ -15,20 +15,20 @@
 namespace fulcrum {
 
 struct Islands {
-    std::span<uint32_t> groupOf;  // by place in bodies.awake: the group, or kNone where no constraint touches
+    std::span<uint32_t> groupOf;  // by index in bodies.awake: the group, or kNone without constraints
     uint32_t groups = 0;
     uint32_t islands = 0;
     static constexpr uint32_t kNone = ~0u;
     static constexpr uint32_t kLargeGroup = 0;  // see SolverGroup
 };
 
-// Finds them anew, and makes their groups, of which bodies and colors are not yet known. In scratch memory of the step.
-// saved: their efforts, where these are known already, or null.
+// Finds islands and creates their groups, without bodies and colors. Uses scratch memory of the step. saved: restored
+// efforts, or null.
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                     const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
                     const std::vector<SavedEffort>* saved, std::vector<SolverGroup>& groups, ScratchArena& scratch);
 
-// Calls visit(color, entry) for all colored constraints of a kind, those that overflow last.
+// Calls visit(color, entry) for all constraints of a kind, those without a color last.
 template <class Visit>
 void VisitEntries(const ConstraintColoring& coloring, ConstraintColoring::Kind kind, Visit&& visit) {
     for (uint32_t c = 0; c <= ConstraintColoring::kColors; ++c)
@@ -36,7 +36,7 @@ void VisitEntries(const ConstraintColoring& coloring, ConstraintColoring::Kind k
 }
 
 inline uint32_t MovingBodyOf(const ConstraintColoring::Entry& entry) {
-    return entry.stillA ? entry.bodyB : entry.bodyA;
+    return entry.fixedA ? entry.bodyB : entry.bodyA;
 }
 
 inline uint32_t GroupOf(const BodyStore& bodies, const Islands& islands, const ConstraintColoring::Entry& entry) {
@@ -47,7 +47,7 @@ inline uint32_t GroupOf(const BodyStore& bodies, const Islands& islands, const J
     return islands.groupOf[bodies.cold[trees.slots[tree.slotsEnd - 1].body].awakePlace];
 }
 
-// Turns counts into the index of the first of each, in order; returns the sum.
+// Replaces each count by the sum of those before it; returns the total.
 inline uint32_t ExclusivePrefixSum(std::span<uint32_t> counts) {
     uint32_t sum = 0;
     for (uint32_t& count : counts) {

@@ -1,6 +1,6 @@
-// Pairs are found by whoever moved. Workers collect keys, which are sorted before any pair is made: the order of the
-// pairs depends on ids alone, not on threads nor on the shape of the trees. Pairs that exist are recognized by their
-// bounds, most of the time: the table of pairs is asked about new ones only.
+// Colliders that moved out of their fat bounds search for pairs. Workers collect keys, which are sorted before pairs
+// are created, so the order of pairs depends only on ids, not on threads or the structure of the trees. Existing pairs
+// are mostly recognized by previously overlapping bounds, so the hash table is only used for new ones.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
 #include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
@@ -15,16 +15,16 @@ namespace fulcrum {
 
 namespace {
 
-// New pairs that overlap deeply. Where a step finds more, the search is given up, bodies that deeply overlap many
-// others start to disperse, and pairs are searched for anew, without those of the crowd, which would be n^2. Crowds
-// with fewer pairs are left to Collide to find.
+// Limit of new pairs that overlap deeply. If a step finds more, the search is aborted, bodies that deeply overlap many
+// others start to disperse, and the search is repeated without the n^2 pairs of the crowd. Smaller crowds are detected
+// by Collide.
 constexpr uint32_t kMostDeepPairs = 1024;
 constexpr uint32_t kAnyNumber = ~0u;
 
-// Whether the bounds of two colliders, of which the first has moved, ask for a pair that is not active.
+// Whether two colliders, the first of which has moved, need a pair that is not active, by their bounds.
 bool AskForPair(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other) {
     const Collider &self = view.colliders.colliders[index], &collider = view.colliders.colliders[other];
-    if (collider.previous.Overlaps(self.previous)) return false;  // they have their pair, or may not have one
+    if (collider.previous.Overlaps(self.previous)) return false;  // the pair exists already, or is filtered out
     if (!MayCollide(view, self.body, collider.body)) return false;
     const uint32_t pair = pairs.Find(index, other);
     return pair == PairStore::kNone ? ListenerAllows(view, self.body, collider.body) : !pairs.active.Contains(pair);
@@ -32,7 +32,7 @@ bool AskForPair(const CollisionView& view, const PairStore& pairs, uint32_t inde
 
 uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : uint64_t(b) << 32 | a; }
 
-// Notes their pair if they are to have one, until more than mostDeep of those found overlap deeply.
+// Records their pair if they need one, until more than mostDeep of the recorded pairs overlap deeply.
 void Consider(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other, uint32_t mostDeep,
               WorkerFindings& findings) {
     if (findings.deepPairs > mostDeep || !AskForPair(view, pairs, index, other)) return;
@@ -52,12 +52,12 @@ void VisitNeighbors(const CollisionView& view, uint32_t index, const Visit& visi
     if (self.moving && (layers & store.staticLayers)) store.staticTree.Query(self.fat, visit);
 }
 
-// Pairs of one collider.
+// Finds the pairs of one collider.
 void Search(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t mostDeep,
             WorkerFindings& findings) {
     if (findings.deepPairs > mostDeep) return;
     VisitNeighbors(view, index, [&](uint32_t other) {
-        if (view.colliders.colliders[other].queued && other < index) return;  // it reports the pair itself
+        if (view.colliders.colliders[other].queued && other < index) return;  // the other one reports the pair
         Consider(view, pairs, index, other, mostDeep, findings);
     });
 }
@@ -70,7 +70,7 @@ void SearchEach(const CollisionView& view, const PairStore& pairs, uint32_t most
     });
 }
 
-// The same where most have moved: a self-join of the tree of moving colliders.
+// The same if most colliders have moved: a self-join of the tree of moving colliders.
 void SearchTogether(const CollisionView& view, const PairStore& pairs, uint32_t mostDeep, const StepWorkers& workers) {
     const ColliderStore& store = view.colliders;
     const auto isQueued = [&](uint32_t i) { return store.colliders[i].queued; };
@@ -81,8 +81,8 @@ void SearchTogether(const CollisionView& view, const PairStore& pairs, uint32_t 
             if (isQueued(low)) Consider(view, pairs, low, high, mostDeep, found);
             else if (isQueued(high)) Consider(view, pairs, high, low, mostDeep, found);
         };
-        // Node by node, since one thread alone gets all of them as one range: a search that is given up must not go on
-        // to visit n^2 pairs.
+        // Node by node, because a single thread gets all of them as one range, and an aborted search must not visit n^2
+        // pairs.
         for (uint32_t node = range.begin; node < range.end && found.deepPairs <= mostDeep; ++node)
             store.movingTree.VisitPairs(node, node + 1, consider);
         if (found.deepPairs > mostDeep) return;
@@ -105,8 +105,8 @@ void SearchTogether(const CollisionView& view, const PairStore& pairs, uint32_t 
     });
 }
 
-// Kinematic bodies search for dispersing ones. These do not search the tree of what moves themselves: each would find
-// all of the crowd.
+// Kinematic bodies search for dispersing ones, because these do not search the tree of moving colliders: each would
+// find the whole crowd.
 void SearchForDispersing(const CollisionView& view, const PairStore& pairs, WorkerFindings& findings) {
     const ColliderStore& store = view.colliders;
     for (uint32_t body = 0; body < view.bodies.Size(); ++body) {
@@ -128,7 +128,7 @@ void SearchAll(const CollisionView& view, const PairStore& pairs, const CrowdSta
     if (!crowd.dispersing.empty()) SearchForDispersing(view, pairs, workers.findings.front());
 }
 
-// Whether more than mostDeep pairs that overlap deeply were found; then all that was found is dropped.
+// Whether more than mostDeep deeply overlapping pairs were found; then all recorded pairs are dropped.
 bool FoundTooDeep(std::span<WorkerFindings> workers, uint64_t mostDeep) {
     uint64_t deep = 0;
     for (WorkerFindings& findings : workers) deep += std::exchange(findings.deepPairs, 0);
@@ -144,7 +144,7 @@ uint32_t AddPair(const BodyStore& bodies, const ColliderStore& colliders, PairSt
     return pairs.Add(colliderA, colliderB);
 }
 
-// Writes what is known of a pair that was added.
+// Initializes a new pair.
 void DescribePair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t index) {
     Pair& pair = pairs.pairs[index];
     pair.bodyA = colliders.colliders[pair.colliderA].body;
@@ -153,13 +153,13 @@ void DescribePair(const BodyStore& bodies, const ColliderStore& colliders, PairS
     const ColliderShape& a = colliders.shapes[pair.colliderA];
     const ColliderShape& b = colliders.shapes[pair.colliderB];
     pair.offset = a.offset || b.offset;
-    pair.shapeA = static_cast<const ConvexShape*>(a.shape);  // what moves freely has a volume
+    pair.shapeA = static_cast<const ConvexShape*>(a.shape);  // dynamic bodies have convex shapes
     pair.shapeB = b.shape;
     pair.surface = b.shape->IsSurface();
     CombineMaterials(bodies, pairs, index);
 }
 
-// Of keys, sorted: pairs that are new, and pairs that rest.
+// Creates new pairs and activates resting ones, from sorted keys.
 void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std::span<const uint64_t> keys,
                    PairStore& pairs, std::vector<uint32_t>& activated, const StepWorkers& workers) {
     const std::span<uint32_t> added = workers.scratch.Allocate<uint32_t>(keys.size());
@@ -175,7 +175,8 @@ void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std:
     });
 }
 
-// The lists get room by the size of the world, so that no step of a settled one allocates, whichever worker does what.
+// Reserves the lists by the size of the world, so that steps in steady state do not allocate, whichever worker does the
+// work.
 void ReserveLists(PairUpdates& updates, std::span<WorkerFindings> workers, size_t colliders) {
     updates.activated.reserve(colliders);
     updates.found.reserve(colliders);
@@ -196,7 +197,7 @@ void FindPairs(const StepContext& step, const JointStore& joints, BodyStore& bod
     const CollisionView view{step, bodies, colliders, joints};
     SearchAll(view, pairs, crowd, kMostDeepPairs, workers);
     if (FoundTooDeep(workers.findings, kMostDeepPairs)) {
-        // Of what has moved, all that overlap many others deeply start to disperse.
+        // Of the moved colliders' bodies, those that deeply overlap many others start to disperse.
         for (const uint32_t index : colliders.moved) crowd.deepOverlaps.push_back(colliders.colliders[index].body);
         StartDispersing(step, colliders, joints, bodies, pairs, coloring, crowd, updates.changes, workers);
         SearchAll(view, pairs, crowd, kAnyNumber, workers);

@@ -9,18 +9,18 @@ namespace fulcrum {
 
 namespace {
 
-// The axis of rotation moves the faster the more the principal moments differ: so many substeps that it turns by
-// little in each, for a body that turns by `angle` in the step. A step's time must not depend on how fast bodies spin:
-// 256 at most, which serve up to some 1500 rad/s in steps of 1/60 s.
+// Number of substeps for a body that rotates by `angle` in the step, such that the rotation axis moves little in each;
+// it moves the faster the more the principal moments differ. At most 256, to bound the cost, sufficient up to some 1500
+// rad/s in steps of 1/60 s.
 int RotationSubsteps(const BodyDynamics& d, float angle) {
     constexpr float kMost = 256;
-    constexpr float kSmall = 0.1f;  // rad: errors of some 1e-8 a substep, as of the float that keeps the rotation
+    constexpr float kSmall = 0.1f;  // rad: errors of some 1e-8 per substep, like the rounding of the stored rotation
     const auto [low, high] = std::minmax({d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]});
     const float wandering = angle * (1.0f - low / high);
     return static_cast<int>(std::clamp(wandering / kSmall, 0.0f, kMost - 1)) + 1;
 }
 
-// The axis about which the two other principal moments are equal; 3: there is none.
+// The symmetry axis: the other two principal moments are equal; 3: none.
 int SymmetryAxis(const BodyDynamics& d) {
     constexpr float kEqual = 1e-5f;
     for (int k = 0; k < 3; ++k) {
@@ -30,9 +30,9 @@ int SymmetryAxis(const BodyDynamics& d) {
     return 3;
 }
 
-// A body that turns freely about its center of mass, its angular momentum L (kg m2/s, world axes) given. In double: the
-// rotation about the middle axis doubles its error every 2 radians or so, and the roundings of many substeps in float
-// were a fiftieth of a turn after ten of them.
+// Torque-free rotation of a body with given angular momentum L (kg m2/s, world axes). In double, because errors of
+// rotation about the intermediate axis double every 2 radians, and float rounding of many substeps gave an error of a
+// fiftieth of a revolution after ten revolutions.
 template <class Real>
 struct FreeTop {
     using Vector = Vec3<Real>;
@@ -47,7 +47,7 @@ struct FreeTop {
         return {q.x * scale, q.y * scale, q.z * scale, q.w * scale};
     }
     static Rotation Turned(const Vector& by, const Rotation& at) { return RotationFromVector<Real>(by) * at; }
-    // Component by component: of lanes, Eigen would not know the product.
+    // Component-wise product.
     static Vector Scaled(const Vector& v, const Vector& by) {
         return Vector(v.x() * by.x(), v.y() * by.y(), v.z() * by.z());
     }
@@ -66,8 +66,8 @@ struct FreeTop {
         }
         momentum = Rotate<Real>(rotation, momentum);
     }
-    // Exact for a body of which the two moments beside an axis are equal: it turns at constant rates about L and about
-    // its own axis, since L / I and, in the body, the part of L along the axis do not change. `axis`: 1 for it, else 0.
+    // Exact for a body of revolution: it rotates at constant rates about L and about its symmetry axis, since L / I and
+    // the component of L along the axis are constant. `axis`: 1 for the component of the axis, else 0.
     void AdvanceSymmetric(const Vector& axis, const Real& along, const Real& across, const Real& h) {
         using detail::Select;
         const Vector inBody = InverseRotate<Real>(rotation, momentum);
@@ -75,8 +75,8 @@ struct FreeTop {
         for (int k = 0; k < 3; ++k) spin[k] = Select(axis[k] > Real(0.0), inBody[k] * (along - across) * h, Real(0.0));
         rotation = Unit(Turned(momentum * (across * h), rotation) * RotationFromVector<Real>(spin));
     }
-    // Of the fourth order, on the rotations, by two exponentials (E. Celledoni, A. Marthinsen, B. Owren,
-    // Commutator-free Lie group methods, Future Generation Computer Systems 19, 2003): dq/dt = (I(q)^-1 L) q / 2.
+    // Fourth-order Lie group integrator with two exponentials (E. Celledoni, A. Marthinsen, B. Owren, Commutator-free
+    // Lie group methods, Future Generation Computer Systems 19, 2003): dq/dt = (I(q)^-1 L) q / 2.
     void Advance(const Real& h) {
         const Vector w1 = VelocityAt(rotation);
         const Rotation half = Turned(w1 * (Real(0.5) * h), rotation);

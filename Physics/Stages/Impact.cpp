@@ -15,13 +15,13 @@ namespace fulcrum {
 namespace {
 
 constexpr int kIterations = 8;
-// Of the inverse masses: where locked axes leave less response to a push than that, it could separate the bodies with a
-// speed along other axes alone, a hundred times the approach. Then the push is left out.
+// Relative to the inverse masses: if locked axes leave less response than this along the impulse, the bodies could only
+// separate by a speed along other axes, a hundred times the approach speed. Such points get no impulse.
 constexpr float kLeastResponse = 1e-4f;
 
 struct Side {
     SymmetricMatrix3 inertia;        // inverse
-    Vector3 mass = Vector3::Zero();  // inverse, along the world's axes: zero where a translation is locked
+    Vector3 mass = Vector3::Zero();  // inverse, along world axes: zero for locked translations
 };
 
 class ImpactSolver {
@@ -53,14 +53,14 @@ public:
     bool Run() {
         if (!approaches_) return false;
         const Vector3 linear[2] = {v_.linear[0], v_.linear[1]}, angular[2] = {v_.angular[0], v_.angular[1]};
-        // A single row is solved in one go.
+        // A single row needs no iterations.
         const int iterations = hit_.pointCount == 1 && hit_.friction == 0 ? 1 : kIterations;
         for (int k = 0; k < iterations; ++k)
             for (int i = 0; i < hit_.pointCount; ++i) {
                 Push(i);
                 SolveFriction(i);
             }
-        const float part = PassivePart();
+        const float part = PassiveFraction();
         for (int s = 0; s < 2 && part < 1; ++s) {
             v_.linear[s] = linear[s] + (v_.linear[s] - linear[s]) * part;
             v_.angular[s] = angular[s] + (v_.angular[s] - angular[s]) * part;
@@ -73,17 +73,17 @@ public:
     }
 
 private:
-    // Of the body against the other.
+    // Velocity of the body relative to the other.
     Vector3 RelativeVelocity(int i) const {
         return v_.linear[0] + Cross<float>(v_.angular[0], hit_.arms[i]) - v_.linear[1] -
                Cross<float>(v_.angular[1], hit_.otherArms[i]);
     }
-    // The same along the other's surface, which may run.
+    // The same relative to the other's surface, which may have a surface velocity.
     Vector3 Slip(int i) const { return RelativeVelocity(i) - hit_.surfaceVelocity; }
-    // Impulses do the work J . (u + u') / 2, u and u' the velocities of the points against each other before and after.
-    // Newton's law at several points, some with friction, may make it positive: then this part of all impulses makes it
-    // zero. Else 1.
-    float PassivePart() const {
+    // Factor of all impulses for which they do no positive work. The work is J . (u + u') / 2, with u and u' the
+    // relative velocities of the points before and after; Newton's law at several points or with friction may make it
+    // positive. 1 if it is not.
+    float PassiveFraction() const {
         float first = 0, second = 0;  // work = first part + second part^2
         for (int i = 0; i < hit_.pointCount; ++i) {
             const Vector3 impulse = frictionImpulses_[i] - hit_.normal * normalImpulses_[i];
@@ -93,7 +93,7 @@ private:
         if (!(first + second > 0)) return 1;
         return second > 0 ? std::clamp(-first / second, 0.0f, 1.0f) : 0.0f;
     }
-    // What an impulse of 1 N s along a unit vector changes of the relative velocity along it.
+    // Change of the relative velocity along a unit vector by an impulse of 1 N s along it.
     float Response(int i, const Vector3& axis) const {
         const Vector3 a = Cross<float>(hit_.arms[i], axis), b = Cross<float>(hit_.otherArms[i], axis);
         const Vector3 mass = side_[0].mass + side_[1].mass;
@@ -135,15 +135,14 @@ private:
     bool approaches_ = false;
     float leastResponse_ = 0;                           // 1/kg
     Vector3 slipsBefore_[SweepHit::kMaxPoints];         // m/s, see Slip
-    float bounceSpeeds_[SweepHit::kMaxPoints] = {};     // m/s, at which they separate
+    float bounceSpeeds_[SweepHit::kMaxPoints] = {};     // m/s: separation speeds
     float normalResponses_[SweepHit::kMaxPoints] = {};  // 1/kg, along the normal
     float normalImpulses_[SweepHit::kMaxPoints] = {};   // N s
     Vector3 frictionImpulses_[SweepHit::kMaxPoints] = {Vector3::Zero(), Vector3::Zero(), Vector3::Zero(),
                                                        Vector3::Zero()};
 };
 
-// Whether what gravity and forces have given a body since a time of its sweep is not simply their acceleration:
-// contacts took a part.
+// Whether contacts took part of the velocity that gravity and forces have given a body since a time of its sweep.
 bool IsCarried(const ImpactStores& stores, const Sweep& sweep) {
     return !sweep.waits && stores.sweeps.IsOfStep(sweep.body, stores.step.number) &&
            stores.coloring.IsTouched(sweep.body);
@@ -155,8 +154,8 @@ float WorkSince(const BodyStore& bodies, const Sweep& sweep, float time) {
     return Dot<float>(Vector3(a[0], a[1], a[2]), Vector3(sweep.DisplacementRate() * (1 - time)));
 }
 
-// m/s, that gravity and forces have given a body since a time of its sweep. Where the solver moved it, contacts took a
-// part of that: then as much as the way since then has made of it, so that to go back leaves its energy as it was.
+// m/s: velocity that gravity and forces have given a body since a time of its sweep. If contacts took part of it, it is
+// computed from the work along the path since then, so that going back in time conserves energy.
 Vector3 GainSince(const ImpactStores& stores, const Sweep& sweep, float time) {
     if (sweep.waits || !stores.sweeps.IsOfStep(sweep.body, stores.step.number)) return Vector3::Zero();
     const float* a = stores.bodies.poses[sweep.body].acceleration;
@@ -167,14 +166,14 @@ Vector3 GainSince(const ImpactStores& stores, const Sweep& sweep, float time) {
     const float along = Dot<float>(acceleration, stores.bodies.LinearVelocityOf(sweep.body)),
                 square = LengthSquared(acceleration);
     if (!(square > 0) || (work < 0 && along >= 0)) return Vector3::Zero();
-    // |v - a s|^2 = |v|^2 - 2 work: the solution that is nearest to 0; where there is none, the least |v - a s|.
+    // |v - a s|^2 = |v|^2 - 2 work: the solution nearest to 0; if there is none, the minimum of |v - a s|.
     const float root = along * along - 2 * square * work;
     const float seconds = root < 0 ? along / square : 2 * work / (along + std::copysign(std::sqrt(root), along));
     return acceleration * (std::isfinite(seconds) ? std::clamp(seconds, -rest, rest) : 0.0f);
 }
 
-// What `since` did not take of that work is taken from the whole motion: an impact that the solver found at the end of
-// a long displacement leaves a body little speed along it.
+// The part of that work that `since` could not account for is taken from the whole velocity: this happens for impacts
+// at the end of a long displacement that leave a body little speed along it.
 void TakeWork(const BodyStore& bodies, const Sweep& sweep, float time, Impact& impact, int side) {
     constexpr float kNotRounding = 1e-4f;
     const BodyDynamics& d = bodies.dynamics[sweep.body];
@@ -188,7 +187,8 @@ void TakeWork(const BodyStore& bodies, const Sweep& sweep, float time, Impact& i
     impact.angular[side] *= part;
 }
 
-// m/s, that they will give it until the end. What a contact carried is not dropped, but what flies up is slowed.
+// m/s: velocity that gravity and forces give it until the end of the step. A body carried by a contact does not fall,
+// but one that moves up is slowed down.
 Vector3 GainUntilEnd(const ImpactStores& stores, uint32_t body, const Vector3& v, const Vector3& since, float rest) {
     const float* a = stores.bodies.poses[body].acceleration;
     const Vector3 acceleration(a[0], a[1], a[2]);
@@ -197,12 +197,12 @@ Vector3 GainUntilEnd(const ImpactStores& stores, uint32_t body, const Vector3& v
     return Dot<float>(since, acceleration) > 0 ? since : Vector3(Vector3::Zero());
 }
 
-// What turns keeps its angular momentum and its energy, not its angular velocity. So the angular velocity a while
-// later, or earlier where `seconds` is negative, is that of a free rotation; as seen by the body, so that the energy is
-// the same however exactly the sweep, which turns at a constant rate to `then`, follows that rotation.
+// Angular velocity after `seconds` (negative: before) of free rotation, which conserves angular momentum and energy,
+// not angular velocity. Computed in the body's frame, so that energy is conserved although the sweep only approximates
+// the rotation by a constant rate up to `then`.
 Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds,
                      const Quaternion& then) {
-    if (d.motion != MotionType::Dynamic || !d.FeelsGyroscopicTorque(w)) return w;
+    if (d.motion != MotionType::Dynamic || !d.HasGyroscopicTorqueAt(w)) return w;
     const auto energyOf = [&](const Vector3& inBody) {
         return TwiceRotationalEnergy<float>(d, InverseRotate(d.PrincipalAxes(), inBody));
     };
@@ -213,7 +213,7 @@ Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Ve
     return after > 0 ? Rotate(then, Vector3(end * std::sqrt(before / after))) : w;
 }
 
-// The sweep turns at the rate of its beginning: bodies that have just bounced would otherwise seem to hit again.
+// The sweep rotates at its initial rate: otherwise bodies that have just bounced could seem to hit again.
 Impact::Rest FlyOn(const ImpactStores& stores, uint32_t body, const Quaternion& rotation, const Vector3& v,
                    const Vector3& w, const Vector3& since, float rest) {
     const BodyDynamics& d = stores.bodies.dynamics[body];
@@ -246,7 +246,7 @@ Impact FindImpact(const ImpactStores& stores, const SweepHit& hit) {
         impact.angular[s] = impact.sweeps[s].waits
                                 ? w
                                 : TurnedFreely(d, impact.sweeps[s].RotationAt(1), w, -rest, impact.poses[s].rotation);
-        // What gravity would have given along a locked axis it did not give.
+        // Gravity has no effect along locked axes.
         if (d.lockedAxes != LockedAxes::None) d.Lock(impact.linear[s], impact.angular[s]);
         if (bodies.CanMove(pair[s]) && IsCarried(stores, impact.sweeps[s]))
             TakeWork(bodies, impact.sweeps[s], hit.time, impact, s);

@@ -16,7 +16,7 @@ namespace {
 using Lanes = Wide<kLanes>;
 using Indices = uint32_t[kLanes];
 
-// Kernels below are templates over Real: float for one body, Lanes for kLanes bodies at once.
+// The kernels below are templates over Real: float for one body, Lanes for kLanes bodies.
 template <class Real>
 inline constexpr int kBodies = sizeof(Real) / sizeof(float);
 
@@ -43,13 +43,13 @@ struct Rows {
         if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 8, rows[0]);
         else ScatterRows<kCount>(rows, at, count);
     }
-    // First and Second. The other two numbers of a single body may have changed since they were read, those of lanes
-    // not.
+    // Writes First and Second. For a single body the other two numbers of the row may have changed since they were
+    // read, in lanes not.
     void WriteVectors(int count) const {
         if constexpr (std::is_same_v<Real, float>) std::copy_n(at, 6, rows[0]);
         else Write(count);
     }
-    // Where the mask is set.
+    // Writes the lanes of the mask.
     void Write(int count, const WideMask<kCount>& mask) {
         const uint32_t lanes = mask.ToBits();
         alignas(32) float nowhere[8];
@@ -62,13 +62,14 @@ struct Rows {
     }
 };
 
-// The velocities of a substep: `own` without the constraints' share, `carried` what they gave in the last one.
+// The velocities of a substep: `own` is the unconstrained velocity, `carried` the change by constraints in the last
+// substep.
 template <class Real>
 struct SubstepVelocity {
     Rows<Real> velocity, unconstrained;
     Twist<Real> own, carried;
 
-    // again: not the first substep.
+    // again: not the first substep of the step.
     FULCRUM_FORCE_INLINE SubstepVelocity(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], bool again)
         : velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); }),
           unconstrained(index, [&](uint32_t body) { return bodies.unconstrained[body].row; }),
@@ -84,17 +85,17 @@ struct SubstepVelocity {
         unconstrained.Set(own.linear, own.angular);
         unconstrained.WriteVectors(count);
         velocity.Set(own.linear + carried.linear, own.angular + carried.angular);
-        velocity.WriteVectors(count);  // limits of speeds set the marks of a body
+        velocity.WriteVectors(count);  // clamping sets the marks of a body
     }
 };
 
-// Bodies that fly have moved by v h, with v of the end of the substep: the way is v h - a h^2 / 2. What lies on
-// something keeps to v h: contacts hold by velocities.
+// Corrects the displacement of bodies in free flight: they moved by v h with v at the end of the substep, but the exact
+// displacement is v h - a h^2 / 2. Bodies with contact impulses keep v h, since contacts constrain velocities.
 template <class Real, class Mask>
 FULCRUM_FORCE_INLINE void CorrectFlight(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], int count,
                                         const Mask& flies, const Vec3<Real>& acceleration, Real h) {
     Rows<Real> displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
-    // What gets faster than anything moves is held to its largest speed, or frozen.
+    // Beyond the largest speed of any body: clamp or freeze.
     const Vec3<Real> gained = acceleration * h;
     const auto isUsual = Dot<Real>(gained, gained) < Real(1e12f);
     displacement.Set(displacement.First() - gained * (h * Real(0.5f)), displacement.Second());
@@ -123,16 +124,17 @@ void IntegrateVelocity(BodyStore& bodies, uint32_t body, float h, bool again, Wo
         d.Lock(v, w);
         d.Lock(velocity.carried.linear, velocity.carried.angular);
     }
-    // What is not finite must not reach the rows: its neighbors go on. Store finds the forces and freezes it.
+    // A velocity that is not finite must not reach the rows and so the neighbors. Store detects the forces and freezes
+    // the body.
     if (!IsFinite(v) || !IsFinite(w)) velocity.own = velocity.carried = {};
     findings.clamped += LimitSpeeds(bodies, body, v, w);
     velocity.Write(1);
 }
 
-// By how much the rotation vector, rad, of one rotation and a small one after it exceeds their sum, to the second order
-// of the latter (the series of Baker, Campbell and Hausdorff, with all terms of the first order in it: the inverse of
-// the left Jacobian of rotations). Without it a step's error is that of the whole step, however many substeps there
-// are. half: HalfTurnOf `before`.
+// Composition of rotation vectors: the difference between the rotation vector, rad, of a rotation followed by a small
+// one and the sum of their rotation vectors, to second order of the small one (Baker-Campbell-Hausdorff series with all
+// terms of first order in it: the inverse left Jacobian). Without it substeps would not reduce the error of a step.
+// half: HalfTurnOf `before`.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> CompositionCorrection(const Vec3<Real>& before, const Vec2<Real>& half,
                                                       const Vec3<Real>& turn) {
@@ -145,7 +147,7 @@ FULCRUM_FORCE_INLINE Vec3<Real> CompositionCorrection(const Vec3<Real>& before, 
     return across * Real(0.5f) - Cross<Real>(before, across) * gamma + Cross<Real>(turn, across) * Real(1.0f / 12);
 }
 
-// Moves bodies by the motion for h seconds. Of jointed ones the rotation is put together with that before.
+// Moves bodies by the motion for h seconds. For jointed ones rotations are composed exactly.
 template <class Real, class Mask>
 FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<Real>& motion, const Mask& isJointed,
                                          Real h, int count) {
@@ -169,9 +171,8 @@ FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<R
     return rotation;
 }
 
-// Of the bodies that feel gyroscopic torque: changes w, rad/s, by it and turns their world inertia. Joints pull at the
-// ends of bodies, where an inertia that is left behind makes torques of their forces that are not there. turn: rotation
-// since the start of the step, rad.
+// For bodies with gyroscopic torque: applies it to w, rad/s, and rotates their world inertia. Joints act at the ends of
+// bodies, where an outdated inertia would give wrong torques. turn: rotation since the start of the step, rad.
 template <class Real, class Mask>
 FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], int count,
                                       const Mask& feels, const Vec3<Real>& turn, Vec3<Real>& w, Real h) {
@@ -193,15 +194,15 @@ FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)
     mass.Write(count, feels);
 }
 
-// What constraints made of a body's velocity, before it moves with it. What is not finite must not reach the poses
-// either, by which the constraints of its neighbors see it.
+// Validates the solved velocity of a body before it moves. If not finite, it must not reach the pose either, which
+// constraints of neighbors read.
 void LimitSolved(BodyStore& bodies, uint32_t body, WorkerFindings& findings) {
     Vector3 v = bodies.LinearVelocityOf(body), w = bodies.AngularVelocityOf(body);
     if (IsWithinSpeeds(bodies.dynamics[body], v, w)) return;
     if (IsFinite(v) && IsFinite(w)) {
         const Vector3 fastV = v, fastW = w;
         findings.clamped += ShortenSpeeds(bodies, body, v, w);
-        // What is taken away was no impulse of a constraint: the next substep must not repeat it.
+        // The change by clamping is no constraint impulse: the next substep's warm start must not repeat it.
         float* row = bodies.unconstrained[body].row;
         for (int k = 0; k < 3; ++k) {
             row[BodyState::kLinear + k] += v[k] - fastV[k];
@@ -214,7 +215,7 @@ void LimitSolved(BodyStore& bodies, uint32_t body, WorkerFindings& findings) {
     bodies.SetVelocity(body, v, w);
 }
 
-// m/s and rad/s, by which joints that are far apart move a body.
+// m/s and rad/s: pseudo-velocity of a body by joints that are far apart.
 Twist<float> PullOf(const BodyDynamics& d, const BodyState& pseudo) {
     const float(&v)[3] = pseudo.linearVelocity, (&w)[3] = pseudo.angularVelocity;
     Twist<float> pull{Vector3(v[0], v[1], v[2]), Vector3(w[0], w[1], w[2])};
@@ -223,8 +224,8 @@ Twist<float> PullOf(const BodyDynamics& d, const BodyState& pseudo) {
     return pull;
 }
 
-// What moves against a pull, near something fixed, loses so much of its speed: held in its place by the pull it would
-// fall faster and faster, as no contact stops it. In the air bodies fall together.
+// The part of a velocity opposite to the pull that a body near a static or kinematic one loses: held in place by the
+// pull it would otherwise keep accelerating, since no contact stops it.
 Vector3 LostTo(const Vector3& pull, const Vector3& v) {
     const float against = -Dot(v, pull);
     return against > 0.0f ? Vector3(pull * Min(against / LengthSquared(pull), 1.0f)) : Vector3(Vector3::Zero());
@@ -242,8 +243,7 @@ void SlowDown(BodyStore& bodies, uint32_t body, const Twist<float>& pull, Twist<
     bodies.SetVelocity(body, motion.linear, motion.angular);
 }
 
-// Adds the pull to the motion, and takes from the body's velocities what is lost to it. Without a pull every bit stays,
-// whatever joints are solved in the same group.
+// Adds the pull to the motion, and removes LostTo from the body's velocities. Bodies without a pull stay bit-identical.
 void AddPull(BodyStore& bodies, uint32_t body, const BodyState& pseudo, Twist<float>& motion) {
     const Twist<float> pull = PullOf(bodies.dynamics[body], pseudo);
     if (pull.linear.isZero(0) && pull.angular.isZero(0)) return;
@@ -285,18 +285,18 @@ void IntegratePose(const MovedBodies& moved, uint32_t body, float h, bool isLast
     if (isLast && Flies<float>(bodies, {body}, bodies.LinearVelocityOf(body)))
         CorrectFlight<float>(bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
     Vector3 w = bodies.AngularVelocityOf(body);
-    if (!isJointed || !d.FeelsGyroscopicTorque(w)) return;
+    if (!isJointed || !d.HasGyroscopicTorqueAt(w)) return;
     TurnInertia(bodies, {body}, 1, true, turn, w, h);
     bodies.SetVelocity(body, bodies.LinearVelocityOf(body), w);
 }
 
-// Of velocities and a largest speed; what is not finite is beyond any.
+// Mask of the lanes whose velocity is within the limit; false if not finite.
 WideMask<kLanes> IsWithin(const Vec3<Lanes>& v, const Lanes& limit) {
     const Lanes squared = Dot<Lanes>(v, v);
     return (squared <= limit * limit) & (squared < Lanes(std::numeric_limits<float>::infinity()));
 }
 
-// Whether that was all there is to do; else nothing is done.
+// Returns false, and does nothing, if some body needs the scalar code.
 bool IntegrateVelocitiesInLanes(BodyStore& bodies, const Indices& index, int count, float h, bool again) {
     for (uint32_t body : index) {
         const BodyDynamics& d = bodies.dynamics[body];
@@ -356,8 +356,8 @@ bool IntegratePosesInLanes(const MovedBodies& moved, const Indices& index, int c
     return true;
 }
 
-// Calls inLanes(indices, count) for so many bodies at a time, and oneByOne(body) where that declines. Lanes beyond the
-// last body repeat it.
+// Calls inLanes(indices, count) for kLanes bodies at a time, and oneByOne(body) for each if that returns false. Lanes
+// beyond the last body repeat it.
 template <class InLanes, class OneByOne>
 void VisitBodies(std::span<const uint32_t> bodies, InLanes&& inLanes, OneByOne&& oneByOne) {
     while (!bodies.empty()) {

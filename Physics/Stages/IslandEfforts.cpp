@@ -18,12 +18,12 @@ void RaiseLeast(IslandEffort& effort, const LeastEffort& to, uint32_t culprit) {
     if (effort.least.Raise(to)) effort.culprit = culprit;
 }
 
-// Where the centers of mass of an island are, seen from one of them, and their masses.
+// Extent of an island: moments of its centers of mass relative to one of them, and masses.
 struct Extent {
     float count = 0;
-    float low = 0, high = 0;                     // m, against gravity
-    float x = 0, z = 0, xx = 0, xz = 0, zz = 0;  // sums across it
-    float mass = 0;                              // kg, of all
+    float low = 0, high = 0;                     // m, along the direction opposite to gravity
+    float x = 0, z = 0, xx = 0, xz = 0, zz = 0;  // sums over the horizontal coordinates
+    float mass = 0;                              // kg, total
     uint32_t lightest = ~0u;                     // body
     bool hasJoints = false;
 
@@ -38,7 +38,7 @@ struct Extent {
         zz += across * across;
     }
     float Height() const { return high - low; }
-    // m^2: the squares of half the widths of the narrower and of the wider side, were the centers spread evenly.
+    // m^2: the squared half widths of the narrower and the wider side, if the centers were distributed uniformly.
     std::pair<float, float> SquaredHalfWidths() const {
         const float n = 1 / count, a = n * xx - n * n * x * x, b = n * xz - n * n * x * z, d = n * zz - n * n * z * z;
         const float mean = 0.5f * (a + d), half = 0.5f * (a - d), radius = std::sqrt(half * half + b * b);
@@ -46,13 +46,14 @@ struct Extent {
     }
 };
 
-// A column buckles under its own weight where the sink at its foot times its height is more than 0.22 a^2, with a half
-// its width (measured; as an elastic column it does so at a multiple of the stiffness over the weight). The largest
-// product that is left alone is the target's penetration times this and a^2: a quarter of that where it is 0.004.
+// A column buckles under its own weight if the sink at its base times its height exceeds 0.22 a^2, with a half its
+// width (measured; consistent with an elastic column, which buckles at a critical ratio of stiffness to weight). The
+// allowed product is this constant times the target's penetration times a^2: a quarter of the critical one at the
+// default 0.004.
 constexpr float kBuckling = 12;
-// Likewise of what is no column: neighbors hold each other.
+// Likewise for islands that are no columns: neighbors support each other.
 constexpr float kBucklingOfWalls = 20;
-// What is that many times as high as half its width is a column: what is at its foot carries all of it.
+// A column is at least this many times as high as half its width: its base carries all of it.
 constexpr float kSlender = 8;
 // Of large islands, all of whose bodies cost more then, only walls ask for more: those so much higher than they are
 // thick that they would buckle soon. A column of their height would have to be twice as stiff; walls that taper come to
@@ -60,17 +61,18 @@ constexpr float kSlender = 8;
 constexpr float kBucklingOfLarge = 110;
 // Bodies of large islands are held by an effort at which so many weights sink them as far as they may.
 constexpr float kWeights = 2;
-// Constraints of an island that may be high enough to buckle.
+// Minimum number of constraints of an island that may buckle.
 constexpr uint32_t kLeastHigh = 4;
-// Beyond the most substeps loads ask for iterations: so many.
+// At the maximum number of substeps, loads ask for more iterations: at most this many.
 constexpr int kMostIterations = 4;
 
 struct Need {
-    // How many times too deep contacts of an island sink, or anchors of joints are apart, with the system's settings.
+    // Ratio of the sink of an island's contacts, or of the gap of its joints, to its target, with the system's
+    // settings.
     float need = 0;
-    uint32_t culprit = ~0u;  // the body that sinks so, or has that joint
-    uint8_t stiffness = 0;   // the least of those under load in the last step; 0: none was
-    bool isStiff = false;    // it needs the stiffest springs: joints' gaps ask for it
+    uint32_t culprit = ~0u;  // the body with that contact or joint
+    uint8_t stiffness = 0;   // minimum over the loaded contacts of the last step; 0: none
+    bool isStiff = false;    // whether it needs the stiffest springs, as gaps of joints do
 
     void Raise(float to, uint32_t body) {
         if (!(need < to)) return;
@@ -141,14 +143,14 @@ private:
         });
     }
 
-    // How many times less than the target bodies of a size, m, may sink, in an island of this extent.
+    // By how much the allowed sink of bodies of this size, m, is below the target in an island of this extent.
     static float BucklingFactor(float size, const Extent& extent, float buckling) {
         if (!(extent.count > 0)) return 1;
         const float width = size * size + extent.SquaredHalfWidths().first;
         return std::max(1.0f, size * extent.Height() / (buckling * width));
     }
 
-    // Of large islands only what small bodies ask for by their own weight: the load of others costs too much.
+    // For large islands only the needs of small bodies by their own weight: more would cost too much.
     void AddNeedsOfLarge() {
         const float least = kWeights * Length(settings_.gravity) * softness_ / settings_.accuracy.penetration;
         for (uint32_t i = 0; i < bodies_.awake.size(); ++i) {
@@ -175,10 +177,10 @@ private:
                            extent.lightest);
     }
 
-    // Of the bodies that a contact moves.
+    // The lighter one of the dynamic bodies of a contact.
     uint32_t LighterOf(const Entry& entry) const {
         const auto inverseMassOf = [&](uint32_t body) { return bodies_.dynamics[body].inverseMass; };
-        if (entry.stillA || entry.stillB) return MovingBodyOf(entry);
+        if (entry.fixedA || entry.fixedB) return MovingBodyOf(entry);
         return inverseMassOf(entry.bodyB) > inverseMassOf(entry.bodyA) ? entry.bodyB : entry.bodyA;
     }
 
@@ -188,14 +190,14 @@ private:
         const uint32_t root = RootOf(MovingBodyOf(entry));
         if (sizes_[root] > mostLoaded_) return;
         float size = std::numeric_limits<float>::infinity();
-        if (!entry.stillA) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyA]));
-        if (!entry.stillB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
+        if (!entry.fixedA) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyA]));
+        if (!entry.fixedB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
         const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
         const float factor = BucklingFactor(size, extent, kBucklingOfWalls);
         const auto needOf = [&](uint32_t level) { return ExcessOfLevel(level) * factor; };
         Need& most = needs_[root];
         if (load.level > 0) most.Raise(needOf(load.level), LighterOf(entry));
-        // What is pressed hard now, be it by an impact, was so with the springs of before.
+        // A contact under high load in the last step, even by an impact, was solved with the last stiffness.
         if (load.stiffness > 0 && needOf(std::max(load.level, load.recent)) > 1) most.Soften(load.stiffness);
     }
 
@@ -209,7 +211,7 @@ private:
     UnionFind& sets_;
     static constexpr uint32_t kNone = ~0u;
     static constexpr Extent kLow{};
-    std::span<uint32_t> places_;  // by root, in extents_; kNone: what it carries alone counts
+    std::span<uint32_t> places_;  // by root, index in extents_; kNone: only its loads count
     std::span<Extent> extents_;
     std::span<Need> needs_;  // by root
 };
@@ -252,25 +254,25 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
     std::span<Need> needs = scratch.Allocate<Need>(count);
     std::fill(needs.begin(), needs.end(), Need{});
-    const bool heedsGaps = HeedsGaps(step.settings);
+    const bool adaptsToGaps = AdaptsToGaps(step.settings);
     VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
         const Joint& joint = joints.joints[entry.constraint];
-        if (!joint.effort.IsAny() && !heedsGaps) return;
+        if (!joint.effort.IsAny() && !adaptsToGaps) return;
         const uint32_t body = MovingBodyOf(entry), root = sets.Find(bodies.cold[body].awakePlace);
         if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
         const LoadLevel& gap = joints.gaps[entry.constraint];
-        if (!heedsGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
+        if (!adaptsToGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
         const float need = ExcessOfLevel(gap.level);
         needs[root].Raise(need, body);
         needs[root].isStiff = true;
         if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });
-    if (HeedsLoads(step.settings))
+    if (AdaptsToLoads(step.settings))
         LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
-    else if (!heedsGaps) return efforts;
+    else if (!adaptsToGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
-        // Springs of islands under load are half as stiff as the stiffest, unless the greatest effort would not do
+        // Islands under load get springs half as stiff as the stiffest, unless the maximum effort does not suffice
         // then.
         const float softer = needs[i].isStiff || sizes[i] > mostLoaded ? 1 : kLoadedSubstep * kLoadedSubstep;
         float need = needs[i].need * softer;

@@ -1,4 +1,4 @@
-// What islands are to be solved with where the system's settings do not do. Called by FindIslands.
+// Solver efforts of islands that need more than the system's settings. Called by FindIslands.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
@@ -20,12 +20,12 @@ struct IslandEffort {
     uint32_t culprit = ~0u;  // the body of the joint or contact that asked for most of it
 };
 
-// Sets each number of an effort to that of the other where it is less; of stiffness the lesser one counts.
+// Component-wise maximum of both efforts; for stiffness the minimum.
 void Raise(IslandEffort& effort, const IslandEffort& to);
 
-// Efforts by the root of the island, in `sets` by place in bodies.awake. Of each number the largest that joints of the
-// island ask for; and what the loads of its contacts ask for, where it has at most `mostLoaded` constraints. sizes:
-// constraints, by root.
+// Efforts by the root of the island; `sets` is indexed as bodies.awake. Each number is the maximum that joints of the
+// island require, and that the loads of its contacts require if it has at most `mostLoaded` constraints. sizes: number
+// of constraints, by root.
 std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodyStore& bodies,
                                           const ConstraintColoring& coloring, const JointStore& joints,
                                           const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded,

@@ -9,8 +9,8 @@ namespace {
 using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
 
-// Joints of one kind may share a batch: they have the same locks, or are balls (BallBatch.h), of round bodies or of
-// any. Balls have the masses that they have.
+// Joints of the same kind may share a batch: same locks, or ball joints (BallBatch.h) of round or other bodies. Joints
+// with mass overrides are not solved as ball joints.
 enum JointKind : uint32_t { kRoundBall = 9, kBall = 10 };
 uint32_t KindOf(uint32_t kind) { return kind >> 8; }
 bool IsBall(uint32_t kind) { return KindOf(kind) >= kRoundBall; }
@@ -21,12 +21,12 @@ uint32_t KindOf(const BodyStore& bodies, const Joint& joint) {
         return static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);
     const auto isRound = [&](int side) {
         const BodyDynamics& d = bodies.dynamics[joint.body[side]];
-        return joint.still[side] || (d.spherical && !d.LocksRotation());
+        return joint.fixed[side] || (d.spherical && !d.LocksRotation());
     };
     return isRound(0) && isRound(1) ? kRoundBall : kBall;
 }
 
-// Brings what the layout knows of the joints up to date, and their order within a color.
+// Updates the layout's list of joints and their order within a color.
 void ListJoints(const BodyStore& bodies, const ConstraintColoring& coloring, JointStore& joints, SolverLayout& layout) {
     layout.listedJoints.clear();
     VisitEntries(coloring, Kind::Joint, [&](uint32_t c, const Entry& entry) {
@@ -34,7 +34,7 @@ void ListJoints(const BodyStore& bodies, const ConstraintColoring& coloring, Joi
         joint.locks = joint.type->Locks();
         const uint32_t before = joint.maxRows;
         joint.maxRows = joint.type->MaxRows();
-        // Batches without room for rows store none: what the last ones did must not stay.
+        // Batches without rows do not store row impulses, so those of the last step must be cleared.
         if (joint.maxRows == 0 && before > 0) {
             joint.type->impulses.fill(0.0f);
             joint.type->forces.fill(0.0f);
@@ -49,7 +49,8 @@ void ListJoints(const BodyStore& bodies, const ConstraintColoring& coloring, Joi
     std::sort(layout.listedJoints.begin(), layout.listedJoints.end());
 }
 
-// What every kind of batch knows of its joints, at most N; lanes beyond them repeat the last one and are never written.
+// Sets the members shared by all kinds of batches, for at most N joints; remaining lanes repeat the last joint and are
+// never written back.
 template <class Batch, size_t N>
 void FillLanes(const BodyStore& bodies, const JointStore& store, Batch& batch, const uint32_t (&)[N],
                std::span<const SortedJoint> joints) {
@@ -65,8 +66,8 @@ void FillLanes(const BodyStore& bodies, const JointStore& store, Batch& batch, c
         batch.joint[lane] = index;
         batch.bodyA[lane] = joint.body[0];
         batch.bodyB[lane] = joint.body[1];
-        batch.fixedA |= bit(joint.still[0]);
-        batch.fixedB |= bit(joint.still[1]);
+        batch.fixedA |= bit(joint.fixed[0]);
+        batch.fixedB |= bit(joint.fixed[1]);
         batch.kinematicA |= bit(isKinematic(0));
         batch.kinematicB |= bit(isKinematic(1));
     }

@@ -1,30 +1,31 @@
-// The joints of the solver's groups, cut into batches of lanes. Called by BuildIslands.
+// Partitions the joints of the solver's groups into batches of lanes. Called by BuildIslands.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/FindIslands.h>
 
 namespace fulcrum {
 
-// A joint with its place: group * ConstraintColoring::kColors + color.
+// A joint with its sort key: group * ConstraintColoring::kColors + color.
 struct SortedJoint {
     uint32_t place, kind, joint;
 };
 
-// All colored joints but those that overflow, by place. Where joints came or went, or their types changed, it first
-// brings what `joints` and `layout` know of the types up to date. In scratch memory of the step.
+// All joints with a color, sorted by group and color, in scratch memory of the step. If joints were added or removed,
+// or their types changed, first updates the data of the types in `joints` and `layout`.
 std::span<const SortedJoint> SortJoints(const BodyStore& bodies, const ConstraintColoring& coloring,
                                         const Islands& islands, JointStore& joints, SolverLayout& layout,
                                         ScratchArena& scratch);
 
-// Cuts the joints of one color into batches, from the front of `sorted`. Trees know the parts of JointBatch alone.
+// Partitions the joints of one color, at the front of `sorted`, into batches. Joints in trees are never in a BallBatch,
+// since trees only access the parts of JointBatch.
 void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_t place, bool hasTrees,
                       std::span<const SortedJoint>& sorted, SolverLayout& layout, ColorBatches& color);
 
-// Of those that fitted no color, one by one.
+// Batches of one lane for joints without a color.
 void MakeOverflowJoints(const BodyStore& bodies, const JointStore& joints, const ConstraintColoring& coloring,
                         std::vector<JointBatch<1>>& batches);
 
-// Gives every batch its room for rows.
+// Assigns every batch its range of rows.
 void ShareRows(SolverLayout& layout);
 
 }  // namespace fulcrum

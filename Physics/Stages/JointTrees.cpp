@@ -10,18 +10,18 @@ namespace {
 
 constexpr uint32_t kNone = JointTreeSlot::kNone;
 constexpr uint32_t kMostSlots = 4096;  // bodies: a tree is solved by one worker
-// Bodies whose masses differ by this factor at most carry no load but their own weight.
+// Bodies whose masses differ at most by this factor count as carrying only their own weight.
 constexpr float kEvenMasses = 2;
-// What costs no more than so many times the system's substeps is iterated, where its joints are to carry no load but
-// their own bodies: a tree of hinges costs ten to twenty times as much as iterations.
+// Joints that carry only their own bodies are iterated if that takes at most this many times the system's substeps: a
+// tree of hinges costs ten to twenty times as much as iterations.
 constexpr float kMostSubsteps = 3;
 
-// The bodies that joints hold together, and one tree among their joints.
+// A set of bodies connected by joints, and a spanning tree of the joints.
 struct Component {
     std::vector<uint32_t> bodies;
     uint32_t root = kNone;
-    bool anchored = false;       // some joint leads to an immovable body
-    bool overridesMass = false;  // some joint has other masses than its bodies: a tree has one for each body
+    bool anchored = false;       // some joint connects to an immovable body
+    bool overridesMass = false;  // some joint overrides masses, which trees do not support
 };
 
 bool HasLocks(const Joint& joint) {
@@ -29,7 +29,7 @@ bool HasLocks(const Joint& joint) {
     return locks.linear != LinearLock::None || locks.angular != AngularLock::None;
 }
 
-// Whether its locks hold two points together and nothing else.
+// Whether it is a ball joint: only a point lock.
 bool IsBall(const Joint& joint) {
     const JointLocks locks = joint.type->Locks();
     return locks.linear == LinearLock::Point && locks.angular == AngularLock::None;
@@ -55,13 +55,13 @@ public:
     void Find() {
         for (int c = 0; c <= ConstraintColoring::kColors; ++c)
             for (const auto& entry : coloring_.At(c).Of(ConstraintColoring::Kind::Joint)) {
-                const uint32_t body = entry.stillA ? entry.bodyB : entry.bodyA;
+                const uint32_t body = entry.fixedA ? entry.bodyB : entry.bodyA;
                 if (!seen_[body]) AddTree(ComponentOf(body));
             }
     }
 
 private:
-    // Visits (joint, side of `body`) for the joints that take part.
+    // Visits (joint, side of `body`) for the participating joints.
     template <class Visit>
     void VisitJoints(uint32_t body, Visit&& visit) const {
         joints_.VisitOf(body, [&](uint32_t index) {
@@ -70,7 +70,7 @@ private:
                 visit(index, joint, joint.SideOf(body));
         });
     }
-    // By how much errors of iterations are less than with four substeps of one iteration of each kind.
+    // Ratio by which iteration errors are smaller than with four substeps of one iteration of each kind.
     static float ErrorDivisorOf(const SolverSettings& solver) {
         const float passes = static_cast<float>(solver.velocityIterations + solver.positionIterations);
         return static_cast<float>(solver.substeps * solver.substeps) * passes / 32;
@@ -86,13 +86,13 @@ private:
             bool anchored = false;
             VisitJoints(body, [&](uint32_t, const Joint& joint, int side) {
                 const uint32_t other = joint.body[1 - side];
-                anchored |= joint.still[1 - side];
+                anchored |= joint.fixed[1 - side];
                 component.overridesMass |= joint.overridesMass;
-                if (joint.still[1 - side] || seen_[other]) return;
+                if (joint.fixed[1 - side] || seen_[other]) return;
                 seen_[other] = 1;
                 component.bodies.push_back(other);
             });
-            // The root: a body joined to an immovable one, else the heaviest.
+            // The root: a body connected to an immovable one, else the heaviest.
             const bool better = component.root == kNone || (anchored && !component.anchored) ||
                                 (anchored == component.anchored && !anchored && MassOf(body) > MassOf(component.root));
             if (better) component.root = body;
@@ -121,26 +121,26 @@ private:
                 const uint32_t other = joint.body[1 - side];
                 if (index == hook) return;
                 ++links;
-                if (joint.still[1 - side]) {
+                if (joint.fixed[1 - side]) {
                     JointTreeAnchor& anchor = trees_.anchors.emplace_back();
                     anchor.slot = s;
                     anchor.joint = index;
                     anchor.isA = side == 0;
                 } else if (slotOf_[other] == kNone) {
-                    slotOf_[other] = s;  // taken; its own is set when it is visited
+                    slotOf_[other] = s;  // reserved; its own is set when it is visited
                     AddSlot(other, s, index, side == 1);
                 }
             });
         }
         tree.slotsEnd = static_cast<uint32_t>(trees_.slots.size());
         tree.anchorsEnd = static_cast<uint32_t>(trees_.anchors.size());
-        // Each joint between two bodies was met twice, an anchor once.
+        // Each joint between two bodies was visited twice, an anchor once.
         const size_t anchors = tree.anchorsEnd - tree.anchorsBegin, joints = (links - anchors) / 2;
         const size_t bodies = tree.slotsEnd - tree.slotsBegin - (hook != kNone);
         const size_t loops = joints - (bodies - 1);
         tree.load = LargestLoad(tree);
-        // The stretch that iterations leave is that of the mean load: of a rope that carries its own weight alone, half
-        // of what its top carries. It falls with the square of the substeps.
+        // Iterations leave a stretch proportional to the mean load; for a rope that carries only its own weight that is
+        // half the load at its top. It decreases with the square of the substeps.
         const bool isRope = LargestMassRatio(tree) <= kEvenMasses;
         float substeps = 0;
         if (isRope) {
@@ -158,14 +158,14 @@ private:
         trees_.anchors.resize(tree.anchorsBegin);
     }
 
-    // Joins the root to the first immovable body; returns the joint.
+    // Adds the joint of the root to the first immovable body; returns the joint.
     uint32_t AddHook(uint32_t root) {
         uint32_t hook = kNone;
         VisitJoints(root, [&](uint32_t index, const Joint& joint, int side) {
-            if (hook != kNone || !joint.still[1 - side]) return;
+            if (hook != kNone || !joint.fixed[1 - side]) return;
             hook = index;
             AddSlot(joint.body[1 - side], kNone, kNone, false);
-            trees_.slots.back().still = true;
+            trees_.slots.back().fixed = true;
             AddSlot(root, 0, index, side == 0);
         });
         return hook;
@@ -179,22 +179,22 @@ private:
         slot.isA = isA;
     }
 
-    // For all that moves but the bodies on ball joints.
+    // For all dynamic bodies except those on ball joints.
     void AddBlocks(JointTrees::Tree& tree) {
         for (uint32_t s = tree.slotsBegin; s < tree.slotsEnd; ++s) {
             JointTreeSlot& slot = trees_.slots[s];
-            if (slot.still || (slot.parent != kNone && IsBall(joints_.joints[slot.joint]))) continue;
+            if (slot.fixed || (slot.parent != kNone && IsBall(joints_.joints[slot.joint]))) continue;
             slot.block = static_cast<uint32_t>(trees_.blocks.size()) - tree.blocksBegin;
             trees_.blocks.emplace_back();
         }
         tree.blocksEnd = static_cast<uint32_t>(trees_.blocks.size());
     }
 
-    // Of the heaviest body to the lightest.
+    // Ratio of the heaviest body's mass to the lightest one's.
     float LargestMassRatio(const JointTrees::Tree& tree) const {
         float heaviest = 0, lightest = std::numeric_limits<float>::infinity();
         for (uint32_t s = tree.slotsBegin; s < tree.slotsEnd; ++s) {
-            if (trees_.slots[s].still) continue;
+            if (trees_.slots[s].fixed) continue;
             const float mass = MassOf(trees_.slots[s].body);
             heaviest = std::max(heaviest, mass);
             lightest = std::min(lightest, mass);
@@ -225,7 +225,7 @@ private:
     float errorDivisor_;
     JointTrees& trees_;
     ScratchArena& scratch_;
-    std::span<uint32_t> slotOf_;  // by body, in its tree
+    std::span<uint32_t> slotOf_;  // by body, its slot in the tree
     std::span<uint8_t> seen_;     // by body
 };
 

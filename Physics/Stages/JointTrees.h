@@ -1,5 +1,6 @@
-// Finds the islands whose joints are to be solved exactly, as trees: those that carry much more than their own bodies'
-// mass. Called by the BuildIslands stage where joints came or went. Serial; the result follows from the joints alone.
+// Finds the islands whose joints are solved by the direct tree solver: those that carry much more than their own
+// bodies' mass. Called by the BuildIslands stage if joints were added or removed. Serial; the result depends only on
+// the joints.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointTree.h>
@@ -17,21 +18,21 @@ struct JointTrees {
         uint32_t slotsBegin = 0, slotsEnd = 0;
         uint32_t blocksBegin = 0, blocksEnd = 0;
         uint32_t anchorsBegin = 0, anchorsEnd = 0;
-        // The largest mass that hangs on a body, itself included, in units of its own; half of it where all bodies are
-        // about as heavy.
+        // The largest ratio of the mass of a body's subtree, itself included, to its own mass; halved if all masses are
+        // similar.
         float load = 0;
     };
-    // What iterations hold as well for less: with more substeps than the system's.
+    // An island that iterations with more substeps solve as well at lower cost.
     struct Rope {
         uint32_t body;
-        float substeps;  // times the system's
+        float substeps;  // in multiples of the system's
     };
     std::vector<Tree> trees;
     std::vector<Rope> ropes;
-    std::vector<JointTreeSlot> slots;  // a tree's parents and blocks are counted from its first ones
+    std::vector<JointTreeSlot> slots;  // parents and blocks are relative to the tree's first ones
     std::vector<JointTreeBlock> blocks;
     std::vector<JointTreeAnchor> anchors;
-    uint64_t version = 0;  // of the joints that this was made from
+    uint64_t version = 0;  // version of the joints from which this was computed
 
     JointTree At(const Tree& tree) {
         return {std::span(slots).subspan(tree.slotsBegin, tree.slotsEnd - tree.slotsBegin),
@@ -40,7 +41,7 @@ struct JointTrees {
     }
 };
 
-// Their matrices are of fixed size.
+// Matrices have fixed size.
 inline size_t HeapBytes(const JointTreeSlot&) { return 0; }
 inline size_t HeapBytes(const JointTreeBlock&) { return 0; }
 inline size_t HeapBytes(const JointTreeAnchor&) { return 0; }
@@ -49,7 +50,7 @@ inline size_t HeapBytes(const JointTrees& all) {
     return HeapBytes(trees, ropes, slots, blocks, anchors, version);
 }
 
-// Brings the trees in line with the colored joints. Reads the settings' exactJointLoad and solver.
+// Updates the trees from the colored joints. Reads the settings' exactJointLoad and solver.
 void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
                     const SystemSettings& settings, JointTrees& trees, ScratchArena& scratch);
 

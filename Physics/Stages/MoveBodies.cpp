@@ -1,5 +1,5 @@
-// Ends the step for each body: what was solved moves by the sum of its substeps, what has no contact or joint flies
-// freely and exactly.
+// Ends the step for each body: bodies with constraints move by their accumulated displacement, bodies without contacts
+// and joints by exact free flight.
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
@@ -14,19 +14,19 @@ namespace fulcrum {
 
 namespace {
 
-// What a body does in the step.
+// Result of the step for a body.
 struct Ending {
     uint32_t body = 0;
     Vector3 displacement = Vector3::Zero();  // m
-    Vector3 v = Vector3::Zero();             // m/s, at its end
-    FreeTurn turn;                           // what is found, where it turns freely, or has been found
-    bool fliesFreely = false;                // it has no contact or joint
+    Vector3 v = Vector3::Zero();             // m/s, at the end of the step
+    FreeTurn turn;                           // free rotation, if any
+    bool fliesFreely = false;                // no contacts or joints
     float slowSpeed = 0;                     // m/s, see SlowSpeed
     float pulled = 0;                        // m/s, see PulledSpeed
 };
 
-// A body without contacts and joints: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether it is
-// still to be turned, keeping its angular momentum.
+// A body without contacts and joints: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether its
+// torque-free rotation is still to be computed.
 bool FlyFreely(BodyStore& bodies, Ending& ending, const StepContext& step, WorkerFindings& findings) {
     const BodyDynamics& d = *ending.turn.body;
     const float* a = bodies.poses[ending.body].acceleration;
@@ -40,12 +40,12 @@ bool FlyFreely(BodyStore& bodies, Ending& ending, const StepContext& step, Worke
     Vector3& change = ending.displacement;
     change = (before + v) * (0.5f * step.dt);
     if (d.lockedAxes != LockedAxes::None) d.Lock(change, w);
-    const bool feelsTop = d.FeelsGyroscopicTorque(w);
+    const bool feelsTop = d.HasGyroscopicTorqueAt(w);
     if (d.hasForce) {
         const Vector3 torque = bodies.cold[ending.body].torque;
         Vector3 pushed = w + bodies.masses[ending.body].InverseInertia() * torque * step.dt;
         const bool isLimited = LengthSquared(pushed) > d.maxAngularSpeed * d.maxAngularSpeed;
-        // What a torque spins up to the largest speed is there at once.
+        // Clamped at once, before the rotation.
         if (isLimited) findings.clamped += LimitSpeeds(bodies, ending.body, v, pushed);
         if (isLimited || !feelsTop) w = pushed;
         else ending.turn.torque = torque;
@@ -55,11 +55,11 @@ bool FlyFreely(BodyStore& bodies, Ending& ending, const StepContext& step, Worke
     return false;
 }
 
-// The solver changed the angular velocity of a body as it stood at the step's beginning. Impulses within the step let
-// it turn otherwise than about the velocity of the end; the spin of a thin rod about its own axis, left behind in world
-// axes while that turned, is then a turn of the rod itself, with a thousand times the energy. What would gain a
-// twentieth is carried along with the body, as far as it takes to gain none; not what rocks as it comes to rest, which
-// its support damps.
+// Corrects the angular velocity of bodies with contacts for their rotation in the step. The solver computes it with the
+// inertia at the start of the step. If the axis of a spinning thin rod rotates in the step while the velocity stays
+// constant in world axes, the spin becomes a rotation of the rod itself, with a thousand times the energy. If energy
+// would increase by more than a twentieth, the velocity is rotated with the body just far enough to avoid that. Smaller
+// changes, as of bodies rocking to rest, are left to damping by the support.
 Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quaternion& after, const Vector3& w) {
     constexpr float kGain = 1.0001f;
     const auto energyOf = [&](const Quaternion& rotation, const Vector3& velocity) {
@@ -67,7 +67,7 @@ Vector3 CarriedAlong(const BodyDynamics& d, const Quaternion& before, const Quat
     };
     const float wanted = energyOf(before, w), gain = energyOf(after, w) - wanted;
     if (!(gain > (kGain - 1) * wanted)) return w;
-    // The energy of w + s (carried - w) is a parabola in s that is `wanted` at 1, and at gain / (its curvature).
+    // The energy of w + s (carried - w) is a parabola in s that equals `wanted` at 1 and at gain / curvature.
     const Vector3 change = Rotate(after, InverseRotate(before, w)) - w;
     const float curvature = energyOf(after, change);
     return w + change * (gain < curvature ? gain / curvature : 1.0f);
@@ -85,30 +85,29 @@ void MoveSolved(BodyStore& bodies, const JointStore& joints, Ending& ending, flo
         ending.v = NoFasterThan(ending.v, VectorAt<BodyState::kLinear>(free));
         w = NoFasterThan(w, VectorAt<BodyState::kAngular>(free));
     }
-    // Impacts move bodies along the way that their speeds before and after them make, whatever limits and locks these
-    // are held to (BounceContacts.h).
+    // Impacts displace bodies without regard to speed limits and locked axes (BounceContacts.h), so these are applied
+    // here.
     Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
     LimitLength(ending.displacement, d.maxLinearSpeed * dt);
     LimitLength(turn, d.maxAngularSpeed * dt);
     if (d.lockedAxes != LockedAxes::None) d.Lock(ending.displacement, turn);
     const Quaternion before = rotation;
     rotation = Normalized(RotationFromVector(turn) * rotation);
-    // With joints every substep has seen to that.
-    if (!d.FeelsGyroscopicTorque(w) || joints.HasAny(body)) return;
+    // For jointed bodies every substep has done that.
+    if (!d.HasGyroscopicTorqueAt(w) || joints.HasAny(body)) return;
     w = CarriedAlong(d, before, rotation, w);
     w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]),
                                    AxesOf(d, rotation), w, dt);
 }
 
-// m/s: what is slower may fall asleep. Of small bodies so many of their radii a second.
+// m/s: slower bodies may fall asleep. For small bodies given in radii per second.
 float SlowSpeed(const SleepSettings& sleep, const BodyDynamics& body) {
     constexpr float kRadiiPerSecond = 1;
     return std::min(sleep.linearSpeed, kRadiiPerSecond * body.outerRadius);
 }
 
-// m/s, of the farthest point of a body that moves by v and turns by w, at most. By its outer ball, or, where that is
-// too fast to sleep, `slow` or more, by the corners of its box: a thin rod that turns about its own length hardly
-// moves.
+// m/s: upper bound of the speed of any point of a body with velocities v and w. By its bounding sphere, or, if that
+// gives `slow` or more, by the corners of its box: a thin rod rotating about its own length hardly moves.
 float FarthestSpeed(const BodyStore& bodies, uint32_t body, float slow, const Vector3& v, const Vector3& w) {
     const float linear = Length(v), simple = linear + Length(w) * bodies.dynamics[body].outerRadius;
     if (simple < slow || linear >= slow) return simple;
@@ -120,8 +119,8 @@ float FarthestSpeed(const BodyStore& bodies, uint32_t body, float slow, const Ve
     return std::min(simple, linear + Length(most));
 }
 
-// What joints pull together moves without a speed at the step's end: pseudo-velocities are none, and relaxing has taken
-// pushes out.
+// Speed from the displacement of the step, for bodies moved by joints that are pulled together: neither
+// pseudo-velocities nor relaxed corrections appear in the velocities.
 float PulledSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) {
     const BodyState& s = bodies.states[body];
     const float inverseDt = 1.0f / dt;
@@ -130,7 +129,7 @@ float PulledSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) 
                          Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]) * inverseDt);
 }
 
-// Whether force and torque of this step changed the velocity by finite amounts.
+// Whether the velocity changes by force and torque of this step are finite.
 bool PushIsFinite(const BodyStore& bodies, uint32_t body) {
     if (!bodies.dynamics[body].hasForce) return true;
     const float* a = bodies.poses[body].acceleration;
@@ -150,7 +149,7 @@ public:
           bodies_(bodies),
           sweeps_(sweeps) {}
 
-    // A range of the bodies that are awake.
+    // Moves a range of the awake bodies.
     void Move(JobRange range, WorkerFindings& findings) const {
         Ending endings[kTurnsTogether];
         FreeTurn* const turns[kTurnsTogether] = {&endings[0].turn, &endings[1].turn, &endings[2].turn,
@@ -172,13 +171,13 @@ public:
     }
 
 private:
-    // Finds how a body ends the step. False: it has nothing to end. `together`: it is still to be turned, one of
-    // several.
+    // Computes the result of the step for a body. Returns false if there is nothing to do. `together`: its rotation is
+    // still to be computed, in lanes with others.
     bool Begin(uint32_t body, WorkerFindings& findings, Ending& ending, bool& together) const {
         const BodyDynamics& d = bodies_.dynamics[body];
         together = false;
         if (d.frozen) {
-            bodies_.states[body] = {};  // whatever rows have made of it
+            bodies_.states[body] = {};  // discards the solver's result
             return false;
         }
         ending = {.body = body,

@@ -9,14 +9,14 @@ namespace fulcrum {
 namespace {
 
 // A manifold is kept up to this relative motion since it was found.
-constexpr float kKeptDistance = 1e-3f;  // m, but at most this part of the smaller body:
-constexpr float kKeptPart = 2e-3f;
+constexpr float kKeptDistance = 1e-3f;  // m, but at most this fraction of the smaller body's size:
+constexpr float kKeptFraction = 2e-3f;
 constexpr float kKeptAngle = 1e-3f;  // rad
 
-// Impulses are carried on where the cosine of the angle between the normals of two steps is at least this.
+// Impulses are kept for warm starting if the cosine of the angle between the normals of two steps is at least this.
 constexpr float kSameNormal = 0.5f;
 
-// Points are stored relative to the bodies, the narrow phase speaks of the pieces.
+// Points are stored relative to the bodies, the narrow phase computes them relative to the shapes.
 Vector3 ToBody(const CollideStores& stores, const Pair& pair, uint32_t collider, const Vector3& point) {
     return pair.offset ? LocalOf(stores.bodies, stores.colliders, collider).Transform(point) : point;
 }
@@ -50,15 +50,15 @@ void ForgetFriction(ContactRecord& record) {
 
 bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 1) < 0.1f; }
 
-// Whether the contact pushes in another direction than before: its last impulses, along the new normal, would then be
-// no longer those that balance the bodies' other contacts, and opposite pushes on a body in a thin floor would become
-// one that throws it out. What rolls keeps its normal in the other one's frame. Normals are in the frame of piece A.
+// Whether the contact normal changed direction. The impulses of the last step along the new normal would then no longer
+// balance the bodies' other contacts, and opposite contacts of a body in a thin floor would throw it out. A rolling
+// body keeps its normal in the other one's frame. Normals are in the frame of shape A.
 bool NormalTurned(const PairView& v, const Vector3& before, const Vector3& now) {
     if (Dot<float>(before, now) >= kSameNormal) return false;
     return Dot<float>(InverseRotate(v.before.rotation, before), InverseRotate(v.bInA.rotation, now)) < kSameNormal;
 }
 
-// Nothing touches.
+// Clears the manifold.
 void Forget(Pair& pair, ContactRecord& record) {
     if (pair.pointCount == 0) ForgetFriction(record);
     record.pointCount = 0;
@@ -80,9 +80,9 @@ PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairS
 bool HardlyMoved(const PairView& v) {
     const RelativePose& old = v.pair.reference;
     const float size = std::min(v.pair.shapeA->OuterRadius(), v.pair.shapeB->OuterRadius());
-    const float distance = std::min(kKeptDistance, kKeptPart * size);
+    const float distance = std::min(kKeptDistance, kKeptFraction * size);
     if (LengthSquared(Vector3(v.bInA.position - old.position)) > distance * distance) return false;
-    // For small angles |q - q0| is half the angle; the sign of a quaternion does not flip between two steps.
+    // For small angles |q - q0| is half the angle; the quaternion's sign does not flip between two steps.
     const Quaternion& a = v.bInA.rotation;
     const Quaternion& b = old.rotation;
     const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
@@ -99,8 +99,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     ContactRecord& record = v.record;
     const Vector3 normal =
         pair.offset ? Rotate(stores.colliders.shapes[pair.colliderA].local.rotation, manifold.normal) : manifold.normal;
-    // Shapes of extreme sizes, or far apart, can bring any pair function beyond the floats: nothing of that gets into a
-    // record.
+    // With extreme sizes or distances any pair function may overflow: such results are discarded.
     const bool isUsable = manifold.pointCount == 0 || IsUsable(normal);
     if (!isUsable) pair.cache = {};
     if (manifold.pointCount == 0 || !isUsable) return Forget(pair, record);
@@ -114,7 +113,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     uint32_t oldFeatures[Manifold::kMaxPoints];
     std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
 
-    // Velocities of B relative to A, in A's frame.
+    // Velocity of B relative to A, in A's frame.
     const BodyStore& bodies = stores.bodies;
     const Quaternion toWorld = bodies.RotationOf(pair.bodyA);
     const auto inA = [&](const Vector3& world_) { return InverseRotate(toWorld, world_); };
@@ -131,7 +130,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
         if (!IsFinite(pointOfB)) continue;
         const float ofA = Dot<float>(normal, Vector3(vA + Cross<float>(wA, onA)));
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(pointOfB - v.bodyBInA.position))));
-        // Something else may stop one of the two.
+        // One of the two may be stopped by another body.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
         if (found.separation > speculative + farEnd * std::max(approach, 0.0f) * stores.step.dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(pointOfB);
@@ -162,7 +161,7 @@ PairChange NoteTouching(const CollideStores& stores, uint32_t index, WorkerFindi
     return pair.touching ? PairChange::Began : PairChange::Ended;
 }
 
-bool TouchesSleeper(const BodyStore& bodies, const Pair& pair) {
+bool TouchesSleepingBody(const BodyStore& bodies, const Pair& pair) {
     const auto sleeps = [&](uint32_t body) {
         const BodyDynamics& d = bodies.dynamics[body];
         return d.motion == MotionType::Dynamic && !d.awake;

@@ -1,5 +1,5 @@
-// A pair as the Collide stage sees it, and how what the narrow phase finds is written down. Used by Collide and
-// CollideSurface, for different pairs from any number of threads at once.
+// Input of the narrow phase for a pair, and functions that store its results. Used by Collide and CollideSurface, for
+// different pairs from any number of threads at once.
 #pragma once
 
 #include <Fulcrum/Physics/ContactListener.h>
@@ -10,13 +10,13 @@ namespace fulcrum {
 struct PairView {
     Pair& pair;
     ContactRecord& record;
-    RelativePose bodyBInA;       // of the bodies' center frames
-    RelativePose bInA;           // of the pieces'
-    const RelativePose& before;  // the same when the manifold was found
+    RelativePose bodyBInA;       // relative pose of the bodies' center frames
+    RelativePose bInA;           // relative pose of the shapes' center frames
+    const RelativePose& before;  // bInA when the manifold was found
 };
 PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t pair);
 
-// What the Collide stage reads, and the pairs, which alone it writes.
+// The stores that the Collide stage reads, and the pairs, the only one that it writes.
 struct CollideStores {
     const StepContext& step;
     const BodyStore& bodies;
@@ -26,40 +26,40 @@ struct CollideStores {
     PairStore& pairs;
 };
 
-// A body that is hit at one end turns about there, so that its other end comes on faster than it did: a rod's by up to
-// twice. Contacts of bodies that touch something are looked for so many times as far ahead as they move within the
-// step; those of others once, so that what flies freely does so, exactly, up to the step in which it hits.
+// Factor of the speculative distance relative to the motion in the step. A body that is hit at one end rotates, so that
+// its other end gets faster: for a rod up to twice as fast. So the factor is larger for bodies that touch something,
+// and 1 for others, which therefore move in exact free flight until the step in which they hit.
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair);
 
-// Whether the manifolds that were found at pair.reference still do.
+// Whether the manifolds found at pair.reference are still valid.
 bool HardlyMoved(const PairView& view);
 
-// Writes what the narrow phase found into the record. Impulses go on where the same features touch. Points that are
-// farther apart than the speculative distance stay only if they can meet within the step.
+// Writes the result of the narrow phase to the record. Impulses are kept for points with matching feature ids. Points
+// farther apart than the speculative distance are kept only if they can touch within the step.
 void WriteManifold(const CollideStores& stores, const PairView& view, const Manifold& manifold);
 
-// Brings the manifolds of a pair with a surface up to date; `reach`, m: how far apart shapes are seen. Says of each
-// further manifold in `changes` what became of it, and returns that of the first. What has no place goes to
+// Updates the manifolds of a pair with a surface; `reach`, m: the speculative distance. Writes the changes of
+// additional manifolds to `changes`, and returns that of the first. Manifolds without a slot are added to
 // findings.more.
 PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange> changes, uint32_t pair, float reach,
                               WorkerFindings& findings);
 
-// Makes places for those, serially, in the order of the pairs.
+// Creates slots for those, serially, in the order of the pairs.
 void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::span<WorkerFindings> workers);
 
-// Notes what a manifold has come to in this step, once the listener was asked.
+// Determines the change of a manifold in this step, after calling the listener.
 PairChange NoteTouching(const CollideStores& stores, uint32_t pair, WorkerFindings& findings);
-// Asks the listener about a manifold with points and applies its changes; false: the contact is to be ignored.
+// Calls the listener for a manifold with points and applies its changes; returns false if the contact is ignored.
 bool AskListener(const ContactListener& listener, const BodyStore& bodies, const ColliderStore& colliders,
                  PairStore& pairs, uint32_t pair);
-// What the listener wants of a contact that would have this friction and restitution. All of it is in range and finite.
+// The listener's changes of a contact with this default friction and restitution, validated to be in range and finite.
 ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution);
-// A manifold at the poses at which the Collide stage sees it, its points in `room`; and the same after the step.
+// View of a manifold at the poses of the Collide stage, its points in `room`; and the same after the step.
 ContactView ViewContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs, uint32_t pair,
                         ContactView::Point (&room)[ContactRecord::kMaxPoints]);
 ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
                               uint32_t pair, ContactView::Point (&room)[ContactRecord::kMaxPoints]);
-// Whether one of its bodies sleeps, and is to wake where they touch.
-bool TouchesSleeper(const BodyStore& bodies, const Pair& pair);
+// Whether one of its bodies sleeps and wakes if they touch.
+bool TouchesSleepingBody(const BodyStore& bodies, const Pair& pair);
 
 }  // namespace fulcrum

@@ -21,7 +21,7 @@ void PlaceTrees(const BodyStore& bodies, const Islands& islands, size_t jointCou
         return GroupOf(bodies, islands, layout.trees, layout.trees.trees[tree]);
     };
     std::span<JointPlaceInBatch> places = scratch.Allocate<JointPlaceInBatch>(jointCount);
-    std::fill(places.begin(), places.end(), JointPlaceInBatch{});  // balls have none, nor do the trees that they are in
+    std::fill(places.begin(), places.end(), JointPlaceInBatch{});  // ball joints have none, nor do their trees
     for (uint32_t b = 0; b < layout.joints.count; ++b)
         for (uint32_t lane = 0; lane < static_cast<uint32_t>(layout.joints.batches[b].count); ++lane)
             places[layout.joints.batches[b].joint[lane]] = {b, lane};
@@ -33,7 +33,7 @@ void PlaceTrees(const BodyStore& bodies, const Islands& islands, size_t jointCou
     std::sort(sorted.begin(), sorted.end());
     for (uint64_t entry : sorted) {
         SolverGroup& group = layout.groups[entry >> 32];
-        // Groups of several islands are solved without trees: theirs are parts of islands that are too large.
+        // Groups of several islands are solved without trees: their trees are parts of islands that are too large.
         if (entry >> 32 == Islands::kLargeGroup) continue;
         if (!group.HasTrees()) group.treesBegin = static_cast<uint32_t>(layout.treesByGroup.size());
         layout.treesByGroup.push_back(static_cast<uint32_t>(entry));

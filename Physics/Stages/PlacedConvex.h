@@ -1,12 +1,12 @@
-// A piece of a body as a shape about the body's center. Used by the casts of Continuous and Sense; any number of
-// threads.
+// A convex shape with an offset from the body's center, as a shape in the body's center frame. Used by the casts of
+// Continuous and Sense; any number of threads.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
 namespace fulcrum {
 
-// It turns with the body.
+// It rotates with the body.
 class PlacedConvex final : public ConvexShape {
 public:
     PlacedConvex(const ConvexShape& shape, const RelativePose& local)

@@ -24,7 +24,7 @@ void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings
     }
 }
 
-// Records and masses of the contacts that come next are on their way while these are worked on.
+// Prefetches records and masses of the next contacts.
 void Prefetch(const BodyStore& bodies, const PairStore& pairs, std::span<const Entry> entries) {
     for (const Entry& entry : entries) {
         const char* record = reinterpret_cast<const char*>(&pairs.records[entry.constraint]);
@@ -36,7 +36,7 @@ void Prefetch(const BodyStore& bodies, const PairStore& pairs, std::span<const E
     }
 }
 
-// Has the contacts of these lanes, of which numbers are not finite, found anew in the next step.
+// Discards the contacts of these lanes, whose numbers are not finite: the next step finds them anew.
 template <int N, bool kFixedB>
 [[gnu::cold]] void ForgetContacts(PairStore& pairs, const ContactBatch<N, kFixedB>& batch, uint32_t lanes) {
     for (int lane = 0; lane < batch.count; ++lane)
@@ -46,8 +46,8 @@ template <int N, bool kFixedB>
         }
 }
 
-// Of bodies that were created in each other: they are pushed apart slowly, and what pushed them in the last step is
-// not there again, as they had to keep to that speed.
+// For bodies created inside each other: limits the recovery speed and disables the warm start, because their velocities
+// are clamped to that speed.
 template <int N, bool kFixedB>
 [[gnu::cold]] void LimitPushes(const BodyStore& bodies, float mostSpeed, const uint32_t (&bodyB)[N],
                                ContactBatch<N, kFixedB>& batch) {
@@ -58,21 +58,21 @@ template <int N, bool kFixedB>
         };
         if (!isCrowded(batch.bodyA[lane]) && !isCrowded(bodyB[lane])) continue;
         batch.maxPushSpeed.Set(lane, std::min(batch.maxPushSpeed[lane], mostSpeed));
-        batch.inverseSoftDepth.Set(lane, 0.0f);  // however deep
+        batch.inverseSoftDepth.Set(lane, 0.0f);  // at any depth
     }
 }
 
-// What contacts are prepared from. Pairs: those whose numbers are not finite lose their points.
+// Inputs of contact preparation. Pairs whose numbers are not finite lose their points.
 struct ContactSource {
     const BodyStore& bodies;
     PairStore& pairs;
     ContactPrepareSettings settings;
-    bool hasCrowds;            // some bodies are crowded:
-    float depenetrationSpeed;  // m/s, at which they are pushed at most
+    bool hasCrowds;            // some bodies are crowded
+    float depenetrationSpeed;  // m/s, their largest recovery speed
     ContactNote* notes;        // null without contact events
 };
 
-// Fills the batch with at most N contacts; lanes beyond them repeat the last one and are never written.
+// Fills the batch with at most N contacts; remaining lanes repeat the last one and are never written back.
 template <int N, bool kFixedB>
 void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, std::span<const Entry> entries,
           WorkerFindings& findings) {
@@ -109,7 +109,7 @@ void FillRange(const ContactSource& from, ContactBatchList<kFixedB>& list, const
     }
 }
 
-// A part of a color, for the large group, whose colors are cut into pieces of so many batches.
+// Batches per job for the large group, whose colors are split into several jobs.
 constexpr uint32_t kPiece = 16;
 BatchRange PieceOf(const BatchRange& range, uint32_t piece) {
     const uint32_t skipped = std::min(piece * kPiece, range.Count());
@@ -202,7 +202,7 @@ private:
     void FillJoints(BallBatch<N>& batch, WorkerFindings& findings) const {
         PrepareJoints(batch, joints_.records.data(), contacts_.bodies.ForSolver(), jointSettings_, findings.joints);
     }
-    // Of the overflow, the i-th of its kind.
+    // The i-th contact of a kind in the overflow.
     template <bool kFixedB>
     void FillSingle(ContactBatch<1, kFixedB>& batch, const ConstraintColoring::Color& overflow, size_t i,
                     WorkerFindings& findings) const {
@@ -219,7 +219,7 @@ private:
     SolverLayout& layout_;
 };
 
-// The rows of a large group, on all workers.
+// Fills the rows of a large group on all workers.
 void FillTogether(const RowFiller& filler, const SolverLayout& layout, const SolverGroup& group,
                   const StepWorkers& workers) {
     const auto piecesOf = [&](uint32_t c) {
@@ -246,7 +246,7 @@ void FillTogether(const RowFiller& filler, const SolverLayout& layout, const Sol
 void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
              const CrowdState& crowd, PairStore& pairs, JointStore& joints, SolverLayout& layout,
              const StepWorkers& workers, StepReport& report) {
-    // Of contacts that are not solved in this step, too: their bodies are frozen, say.
+    // Includes contacts that are not solved in this step, e.g. of frozen bodies.
     layout.notes.assign(step.settings.events.contacts ? pairs.pairs.size() : 0, {});
     if (coloring.Size() == 0) return;
     const auto fillerOf = [&](const SolverGroup& group) {

@@ -1,7 +1,7 @@
-// What slides from one fixed body onto the next, flush with it, must not feel the seam. The narrow phase sees pairs
-// alone: to it the next body ends in an edge, or in a side that the first one hides, and both push sideways. Such a
-// contact loses its points: its shape lies as a whole below the plane of another contact on which the body rests, so
-// there is nothing to run into.
+// Removes ghost collisions at seams between static bodies. A body that slides from one static body onto the next, flush
+// with it, must not feel the seam. The narrow phase only sees pairs: to it the next body has an edge, or a side hidden
+// by the first one, and both give sideways normals. Such a contact loses its points if its shape lies entirely below
+// the plane of another contact on which the body rests, so that there is nothing to collide with.
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -14,8 +14,8 @@ namespace {
 
 using Kind = ConstraintColoring::Kind;
 
-constexpr float kFlush = 1e-3f;  // m: what rises less above a plane does not rise, but at most this part of the body:
-constexpr float kFlushPart = 0.01f;
+constexpr float kFlush = 1e-3f;  // m: height above the plane that counts as flush, but at most this fraction of a body:
+constexpr float kFlushFraction = 0.01f;
 constexpr float kSameDirection = 0.9998f;  // 1 degree
 
 // A contact in the center frame of its body A.
@@ -47,7 +47,8 @@ public:
         return support;
     }
 
-    // The contacts of one body with fixed ones. Of two that hide each other the deeper stays.
+    // Processes the contacts of one body with static and kinematic ones. Of two that hide each other the deeper one is
+    // kept.
     void RemoveAmong(std::span<Support> supports) {
         std::sort(supports.begin(), supports.end(), [](const Support& a, const Support& b) {
             return a.separation < b.separation || (a.separation == b.separation && a.pair < b.pair);
@@ -66,7 +67,7 @@ public:
 private:
     PairView View(uint32_t index) const { return ViewPair(bodies_, colliders_, pairs_, index); }
 
-    // Height of the pair's shape B, of a surface the triangle that touches, above a point of A's frame.
+    // Height of the pair's shape B, or the touching triangle of a surface, above a point in A's frame.
     float HeightOf(uint32_t index, const Vector3& point, const Vector3& up) const {
         const PairView view = View(index);
         const RelativePose pose = view.bodyBInA * LocalOf(bodies_, colliders_, view.pair.colliderB);
@@ -93,12 +94,12 @@ private:
         seams_.push_back(index);
     }
 
-    // Whether a body that rests on `bearing` cannot run into what `other` touches.
+    // Whether a body that rests on `bearing` cannot collide with the shape of `other`.
     bool Hides(const Support& bearing, const Support& other) const {
         const Pair& first = pairs_.pairs[bearing.pair];
         const Pair& second = pairs_.pairs[other.pair];
         if (first.colliderA != second.colliderA || first.colliderB == second.colliderB) return false;
-        const float flush = std::min(kFlush, kFlushPart * first.shapeA->OuterRadius());
+        const float flush = std::min(kFlush, kFlushFraction * first.shapeA->OuterRadius());
         return bearing.separation < flush && Dot(bearing.normal, other.normal) < kSameDirection &&
                HeightOf(other.pair, bearing.deepest, Vector3(-bearing.normal)) < flush;
     }
@@ -125,7 +126,7 @@ void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders,
         if (pair.exists) pairs.records[index].pointCount = pair.pointCount;
     }
     seams.clear();
-    // Contacts with fixed bodies take the highest color that is free: few bodies have one in any other.
+    // Contacts with static and kinematic bodies take the highest free color: few bodies have one in any other.
     constexpr int kHighest = ConstraintColoring::kColors - 1;
     size_t others = coloring.At(ConstraintColoring::kOverflow).Of(Kind::Fixed).size();
     for (int c = 0; c < kHighest; ++c) others += coloring.At(c).Of(Kind::Fixed).size();

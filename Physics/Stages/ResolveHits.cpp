@@ -18,8 +18,9 @@ public:
     HitResolver(const StepContext& step, const SleepStores& stores, SweepStore& sweeps, bool isLast, StepReport& report)
         : step_(step), stores_(stores), bodies_(stores.bodies), sweeps_(sweeps), report_(report), isLast_(isLast) {}
 
-    // In the order of their times. What each would do is found beforehand, in parallel: no body is hit twice in a
-    // round. A hit whose bodies may be reached before it by what an earlier one deflects waits for the next round.
+    // Resolves the hits in order of time. Their impacts are computed beforehand, in parallel: no body is hit twice in a
+    // round. A hit whose bodies may be reached before it by a body that an earlier hit deflected waits for the next
+    // round.
     void ResolveAll(const StepWorkers& workers) {
         const std::vector<SweepHit>& hits = sweeps_.hits;
         struct Key {
@@ -51,10 +52,10 @@ public:
     }
 
 private:
-    // Where the bodies of a hit are at its time, and how fast they come and go.
+    // Position and speeds of a hit's bodies, before and after it.
     struct Reach {
         Position center = Position::Zero();
-        float radius = 0;             // m: a ball about both
+        float radius = 0;             // m: a sphere that contains both
         float before = 0, after = 0;  // m per step, the faster of the two
         float time = 1;
 
@@ -62,7 +63,7 @@ private:
     };
 
     Reach ReachOf(const SweepHit& hit, const Impact& impact) const {
-        // Hits that are not decided yet have no points, and no center of their own.
+        // Undecided hits have no points and no center.
         Reach reach{.center = hit.pointCount > 0 ? hit.center : impact.poses[0].position, .time = hit.time};
         const uint32_t bodies[2] = {hit.body, hit.other};
         for (int s = 0; s < 2; ++s) {
@@ -76,8 +77,8 @@ private:
         return reach;
     }
 
-    // Of hits in the order of their times: which may be changed by what an earlier one deflects. Along one axis only
-    // near ones are looked at.
+    // For hits in order of time: which may be changed by bodies deflected by an earlier hit. Sweep and prune along one
+    // axis.
     static void FindReachable(std::span<const Reach> reaches, std::span<uint8_t> mayChange,
                               const StepWorkers& workers) {
         const std::span<uint32_t> along = workers.scratch.Allocate<uint32_t>(reaches.size());
@@ -101,7 +102,7 @@ private:
         });
     }
 
-    // Whether a body of the earlier hit may come to one of the later before that.
+    // Whether a body of the earlier hit may reach one of the later hit before its time.
     static bool MayMeet(const Reach& earlier, const Reach& later) {
         const float most = earlier.radius + later.radius + (earlier.after + later.before) * (later.time - earlier.time);
         return LengthSquared(Between(earlier.center, later.center)) < most * most;
@@ -110,19 +111,19 @@ private:
     void Resolve(const SweepHit& hit, const Impact& impact, bool mayChange) {
         const uint32_t places[2] = {PlaceOf(step_, bodies_, sweeps_, hit.body, &impact.sweeps[0]),
                                     PlaceOf(step_, bodies_, sweeps_, hit.other, &impact.sweeps[1])};
-        if (Swept(places[0]).changed) return;  // it is in the next round, or waits
+        if (Swept(places[0]).changed) return;  // it is cast in the next round, or waits
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         if (mayChange && !lostPartner) return kept_.push_back(hit);
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
         if (hit.isBlocked || !impact.isFinite || (isLast_ && isUndecided)) {
-            // As it came: the impulses of a hit that only one of the two feels would make energy.
+            // With its arriving velocity: an impulse applied to only one of the two would create energy.
             Wait(places[0], hit.time, impact, 0, impact.arrivingLinear[0], impact.arrivingAngular[0]);
         } else if (lostPartner) {
             CastAgain(places[0]);
         } else if (isUndecided) {
             Resume(places[0], hit.time, impact.poses[0]);
         } else if (!impact.bounces && (impact.sweeps[0].waits || impact.sweeps[1].waits)) {
-            // What goes as fast as the one that waits runs into it, and waits, too.
+            // A body that hits one that waits waits, too.
             for (int s = 0; s < 2; ++s)
                 if (places[s] != SweepStore::kNone && !impact.sweeps[s].waits)
                     Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
@@ -131,8 +132,8 @@ private:
         }
     }
 
-    // Both go on with the velocities after the hit. Where nothing approaches, the solver moved them otherwise than
-    // by those.
+    // Both continue with the velocities after the hit. If no point approaches, the displacement by the solver differs
+    // from the velocities.
     void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
         WakeBody(stores_, hit.other);
         report_.sweptHits += impact.bounces;
@@ -193,7 +194,7 @@ private:
         sweep.turn = turn;
     }
 
-    // Stays until the next step, as an obstacle that other casts have not seen; but a kinematic body moves on.
+    // The body stays there until the next step, an obstacle that other casts have not seen; a kinematic body continues.
     void Wait(uint32_t place, float time, const Impact& impact, int side, const Vector3& linear,
               const Vector3& angular) {
         Sweep& sweep = Swept(place);

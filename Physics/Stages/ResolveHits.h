@@ -1,4 +1,4 @@
-// What the hits of a round of casts make of the sweeps of the bodies. Called by the Continuous stage; serial but for
+// Applies the hits of a round of casts to the sweeps of the bodies. Called by the Continuous stage; serial except for
 // the impacts.
 #pragma once
 
@@ -7,13 +7,13 @@
 
 namespace fulcrum {
 
-// The place of a body's sweep in `swept`, where it comes to be when it is first asked for: as `known`, unless that is
-// null. kNone for what neither is cast nor can move.
+// The index of a body's sweep in `swept`; added at the first call, as `known` unless that is null. kNone for bodies
+// that are neither cast nor movable.
 uint32_t PlaceOf(const StepContext& step, const BodyStore& bodies, SweepStore& sweeps, uint32_t body,
                  const Sweep* known = nullptr);
 
-// Resolves SweepStore::hits, and notes in `next` whose sweep is to be cast again. isLast: in the last round whatever
-// hits something stays there until the next step. What is hit wakes.
+// Resolves SweepStore::hits, and lists in `next` the sweeps to cast again. isLast: in the last round bodies with a hit
+// stay there until the next step. Wakes bodies that are hit.
 void ResolveHits(const StepContext& step, const SleepStores& stores, SweepStore& sweeps, bool isLast,
                  const StepWorkers& workers, StepReport& report);
 

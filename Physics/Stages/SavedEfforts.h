@@ -1,5 +1,5 @@
-// Which efforts BuildIslands chose, as snapshots have them. It chooses only where constraints or loads change, by where
-// bodies are then: efforts are state. Groups and batches are not, and are made anew from this after a snapshot was
+// The efforts chosen by BuildIslands, for snapshots. They are state, since they are chosen only when constraints or
+// loads change, by the poses at that time. Groups and batches are derived and rebuilt from this after a snapshot was
 // restored. Written by snapshots and taken by the next BuildIslands. One thread.
 #pragma once
 
@@ -12,26 +12,26 @@
 
 namespace fulcrum {
 
-// A group with an effort of its own, which is that of one island.
+// A group with an effort of its own, that of one island.
 struct SavedEffort {
-    uint32_t body = ~0u;  // its lowest one; ~0u: the first group, of large islands
+    uint32_t body = ~0u;  // the island's lowest index; ~0u: the first group, of large islands
     uint32_t culprit = ~0u;
     LeastEffort effort{};
-    uint8_t stiffness = 0, wantedStiffness = 0;  // as SolverGroup has them
+    uint8_t stiffness = 0, wantedStiffness = 0;  // see SolverGroup
 };
 
-// A contact of a group with substeps of its own, and with how many it was solved.
+// A contact of a group with substeps of its own, and their number.
 struct SolvedContact {
     uint32_t contact;
     int substeps;
 };
 
 struct SavedEfforts {
-    bool areRestored = false;             // the next BuildIslands is to take them
+    bool areRestored = false;             // the next BuildIslands takes them
     bool areCurrent = false;              // nothing has changed since they were chosen
-    std::vector<SavedEffort> groups;      // ascending by body; empty where they are not current
+    std::vector<SavedEffort> groups;      // ascending by body; empty if not current
     std::vector<SolvedContact> contacts;  // ascending
-    // Restored ones hold as long as these stay: ConstraintColoring's and PairStore's.
+    // Versions of ConstraintColoring and PairStore for which restored efforts are valid.
     uint64_t version = 0, loadVersion = 0;
 
     bool AreTaken(const ConstraintColoring& coloring, const PairStore& pairs) const {
@@ -44,7 +44,7 @@ inline size_t HeapBytes(const SavedEfforts& saved) {
     return HeapBytes(groups, contacts);
 }
 
-// Those of a layout, or those that were restored and wait to be taken.
+// The efforts of a layout, or those restored but not yet taken.
 void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& coloring, const PairStore& pairs,
                      const SavedEfforts& restored, SavedEfforts& described);
 

@@ -1,6 +1,6 @@
-// Sensors: every body that is awake looks into their tree, along its whole path; sensors that move look for bodies that
-// rest. What rests in a sensor that rests stays in its list, and is not looked at. Candidates are sorted by ids
-// before their shapes are looked at, so that events do not depend on threads.
+// Sensors: every awake body searches the sensors' tree along its whole path; moving sensors search for resting bodies.
+// Resting bodies in resting sensors stay in their lists without tests. Candidates are sorted by ids before their shapes
+// are tested, so that events do not depend on threads.
 #include <Fulcrum/Physics/Stages/SensorVisits.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
@@ -26,14 +26,14 @@ bool Sees(const CollisionView& view, const Sensor& sensor, uint32_t body) {
     if (d.motion == MotionType::Dynamic && !d.awake && !(sensor.sees & SensorSees::Sleeping)) return false;
     if (view.bodies.cold[body].isSensor && !(sensor.sees & SensorSees::Sensors)) return false;
     if (!(view.step.settings.layerCollides[view.bodies.dynamics[self].layer] >> d.layer & 1u)) return false;
-    if ((d.filtered || view.bodies.dynamics[self].filtered) && !FiltersAllow(view.bodies, self, body)) return false;
+    if ((d.special || view.bodies.dynamics[self].special) && !FiltersAllow(view.bodies, self, body)) return false;
     return !view.joints.ForbidsContact(self, body);
 }
 
 bool IsTouched(const StepContext& step, const SensorSearch& sensing, uint32_t body) {
     return sensing.changedIn[body] == step.number;
 }
-// Whether it is where it was when the last step ended.
+// Whether it has not moved since the end of the last step.
 bool Rests(const CollisionView& view, const SensorSearch& sensing, uint32_t body) {
     return !view.bodies.dynamics[body].awake && !IsTouched(view.step, sensing, body);
 }
@@ -51,7 +51,7 @@ void NoteTouched(const CollisionView& view, SensorStore& store, SensorSearch& se
     }
 }
 
-// The segments of the paths that hits have cut, in the order of bodies and times.
+// The segments of the paths cut by hits, sorted by body and time.
 void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
     cut.clear();
     for (size_t i = 0; i < sweeps.ended.size(); ++i)
@@ -63,7 +63,7 @@ void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
     });
 }
 
-// Sensors are found wherever they were in this step, and by queries where they are now.
+// Sensors must be found along their whole path in this step, and by queries at their current pose.
 void EnlargeSensorBounds(const StepContext& step, const BodyStore& bodies, const SensorStore& sensors,
                          const SweepStore& sweeps, std::span<const MotionSegment> cut, ColliderStore& colliders) {
     for (const Sensor& sensor : sensors.sensors) {
@@ -82,7 +82,7 @@ void EnlargeSensorBounds(const StepContext& step, const BodyStore& bodies, const
     colliders.sensorTree.Optimize();
 }
 
-// The body's sphere along its whole path.
+// Bounds of the body's bounding sphere along its whole path.
 Bounds RoundBounds(const CollisionView& view, const SweepStore& sweeps, std::span<const MotionSegment> cut,
                    uint32_t body) {
     const Position reach = Position::Constant(double{view.bodies.dynamics[body].outerRadius});
@@ -112,7 +112,7 @@ void SearchFromBody(const CollisionView& view, const SensorStore& store, const S
     });
 }
 
-// What is awake, or was changed, looks for itself.
+// Bodies that are awake or were changed search for themselves.
 void SearchFromSensor(const CollisionView& view, const SensorStore& store, const SensorSearch& sensing,
                       const Sensor& sensor, WorkerFindings& findings) {
     if (sensor.removed || Rests(view, sensing, sensor.id.index)) return;
@@ -169,7 +169,7 @@ void LookAtCandidate(const CollisionView& view, const SensorStore& store, const 
         atStart = wasInside ? AtStart::Inside : AtStart::Outside;
     }
     ++findings.sensorTests;
-    // Most of what is inside stays there.
+    // Fast path: most bodies inside stay there.
     if (atStart == AtStart::Inside && IsOnePiece(view.bodies, body) && IsOnePiece(view.bodies, sensor.id.index) &&
         CutSegmentsOf(sensing.cut, body).empty() && OverlapAtEnd(view, sensor.id.index, body)) {
         findings.sensorVisits.push_back({place, body, 0, 1, true, true});
@@ -196,7 +196,7 @@ void FindAllVisits(const CollisionView& view, const SensorStore& store, const Sw
     });
 }
 
-// Events and the new list of one sensor: what was inside and the candidates, both in the order of bodies, side by side.
+// Computes events and the new list of one sensor by merging the old list and the candidates, both sorted by body.
 class Reporter {
 public:
     Reporter(const CollisionView& view, const SensorSearch& sensing, Sensor& sensor, uint32_t place)

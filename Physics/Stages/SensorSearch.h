@@ -1,4 +1,4 @@
-// What the Sense stage works with: who may be inside of which sensor in this step, and when.
+// Buffers of the Sense stage: which bodies may be inside which sensors in this step, and when.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/SweepStore.h>
@@ -8,14 +8,14 @@
 
 namespace fulcrum {
 
-// A stretch of the step during which a body overlaps a sensor.
+// An interval of the step during which a body overlaps a sensor.
 struct SensorVisit {
-    uint32_t sensor = 0, body = 0;  // place in SensorStore::sensors; index
+    uint32_t sensor = 0, body = 0;  // index in SensorStore::sensors; body index
     float from = 0, until = 0;      // fractions of the step
     bool atStart = false, atEnd = false;
 };
 
-// A segment of a body's path: its sweep, from sweep.from until then.
+// A segment of a body's path: its sweep, from sweep.from to `until`.
 struct MotionSegment {
     Sweep sweep;
     float until = 1;
@@ -23,7 +23,7 @@ struct MotionSegment {
 
 struct SensorSearch {
     std::vector<uint64_t> changedIn;   // by body: the last step in which SensorStore::changed had it
-    std::vector<uint64_t> candidates;  // place of a sensor, index of a body that may overlap it in this step; sorted
+    std::vector<uint64_t> candidates;  // index of a sensor and of a body that may overlap it in this step; sorted
     std::vector<SensorVisit> visits;   // sorted
     std::vector<MotionSegment> cut;    // paths of several segments, by body and time
 };

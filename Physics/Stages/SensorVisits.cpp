@@ -13,16 +13,16 @@ namespace fulcrum {
 
 namespace {
 
-// rad: what turns by less is cast without it.
+// rad: smaller rotations are ignored by casts.
 constexpr float kLeastTurn = 1e-4f;
-// Parts per radian in which the one of two turning pieces that is not cast keeps its rotation.
+// Subdivisions per radian: within each, the one of two rotating shapes that is not cast keeps its rotation.
 constexpr float kPartsPerRadian = 16, kMostParts = 32;
-// Of the step: visits no farther apart are one, as of neighboring pieces.
+// Fraction of the step: visits closer than this, as of adjacent shapes, are merged.
 constexpr float kSameTime = 1e-6f;
 
 Pose PoseOf(const ColliderShape& piece, const Pose& body) { return piece.offset ? body * piece.local : body; }
 
-// A piece of a body on a segment of its path.
+// A collider of a body on a segment of its path.
 struct Mover {
     const MotionPath& path;
     const MotionSegment& segment;
@@ -31,7 +31,7 @@ struct Mover {
     Pose BodyAt(float time) const { return path.PoseAt(segment, time); }
     Pose PieceAt(float time) const { return PoseOf(piece, BodyAt(time)); }
     bool IsStill() const { return segment.sweep.displacement.isZero(0) && segment.sweep.turn.isZero(0); }
-    // rad; what no one can see of a ball is none.
+    // rad; zero for balls, whose rotation has no effect.
     float Angle(float from, float until) const {
         const bool isRound = piece.shape->Type() == ShapeType::Sphere && !piece.offset;
         return isRound ? 0.0f : Length(segment.sweep.TurnRate()) * (until - from);
@@ -42,12 +42,12 @@ struct Mover {
 
 struct Touch {
     bool found = false;
-    bool isSure = true;  // else they are apart up to there, and near each other
+    bool isSure = true;  // else they are separated until that time, and close to each other
     float time = 0;
 };
 
-// From `start` to `end`, which is earlier where the path is gone back. The other keeps the rotation that it has in the
-// middle.
+// Casts from `start` to `end`, which may be earlier (backwards). The other keeps the rotation of the middle of the
+// interval.
 Touch Cast(const Mover& caster, const Mover& other, float start, float end, NarrowPhaseMethod method) {
     const ConvexShape& shape = static_cast<const ConvexShape&>(*caster.piece.shape);
     const float from = std::min(start, end), until = std::max(start, end);
@@ -140,7 +140,7 @@ private:
                        Method());
     }
 
-    // Whether they overlap at its end.
+    // Returns whether they overlap at its end.
     bool Stretch(const Mover& sensor, const Mover& body, float from, float until, bool wasInside) {
         if (sensor.IsStill() && body.IsStill()) {
             if (wasInside) Add(from, until, wasInside, true);
@@ -175,7 +175,7 @@ private:
         visits_.push_back(visit);
     }
 
-    // One visit of what several pieces or segments of the path found at the same time.
+    // Merges visits that several colliders or segments of the path found at the same time.
     void Merge() {
         if (visits_.size() - first_ < 2) return;
         const auto begin = visits_.begin() + static_cast<ptrdiff_t>(first_);
@@ -226,7 +226,8 @@ Pose MotionPath::PoseAt(const MotionSegment& segment, float time) const {
 
 namespace {
 
-// Convex shapes hold their centers of mass, and the spheres about them: most of what is well inside is told by that.
+// Convex shapes contain their centers of mass and the inscribed spheres about them, which decides most cases well
+// inside.
 bool CentersTell(const Shape& sensor, const Shape& body, const Vector3& center) {
     if (!sensor.IsConvex() || !body.IsConvex()) return false;
     const float reach = sensor.InnerRadius() + body.InnerRadius();
@@ -254,8 +255,7 @@ Bounds PieceBounds(const BodyStore& bodies, const ColliderStore& colliders, cons
         Bounds ends = BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(segment.sweep.from));
         const float angle = mover.Angle(segment.sweep.from, segment.until);
         if (!mover.IsStill()) ends.Include(BoundsAbout(origin, *mover.piece.shape, mover.PieceAt(segment.until)));
-        // A point at the distance r from the center leaves the straight line between its ends by at most r (1 -
-        // cos(angle / 2)).
+        // A point at distance r from the center deviates from the chord by at most r (1 - cos(angle / 2)).
         bounds.Include(Inflated(ends, std::min(0.125f * angle * angle, 2.0f) * mover.Radius()));
     }
     return bounds;

@@ -9,11 +9,11 @@
 
 namespace fulcrum {
 
-// The segments of the path of a body that continuous collision made bounce in this step; empty for all others. `cut`:
-// see SensorSearch.
+// The path segments of a body that had hits of continuous collision in this step; empty for all others. `cut`: see
+// SensorSearch.
 std::span<const MotionSegment> CutSegmentsOf(std::span<const MotionSegment> cut, uint32_t body);
 
-// A body's path in this step: one segment, or several where continuous collision made it bounce.
+// A body's path in this step: one segment, or several if it had hits of continuous collision.
 class MotionPath {
 public:
     MotionPath(const StepContext& step, const BodyStore& bodies, const SweepStore& sweeps,
@@ -23,7 +23,7 @@ public:
 
     uint32_t Body() const { return body_; }
     std::span<const MotionSegment> Segments() const { return segments_; }
-    // Of the center frame; the time is within the segment.
+    // Pose of the center frame; the time must be within the segment.
     Pose PoseAt(const MotionSegment& segment, float time) const;
 
 private:
@@ -33,19 +33,19 @@ private:
     std::span<const MotionSegment> segments_;
 };
 
-// Whether a body of one piece overlaps a sensor of one piece where they are at the end of the step.
+// Whether a body with one collider overlaps a sensor with one collider at the end of the step.
 bool OverlapAtEnd(const CollisionView& view, uint32_t sensor, uint32_t body);
 
-// Bounds of a collider of the body all along its path.
+// Bounds of a collider of the body along its whole path.
 Bounds PieceBounds(const BodyStore& bodies, const ColliderStore& colliders, const MotionPath& path, uint32_t collider);
 
-// Whether a body overlaps a sensor as the step begins, where that is known.
+// Whether a body overlaps a sensor at the start of the step, if known.
 enum class AtStart : uint8_t { Unknown, Outside, Inside };
 
-// Appends the stretches of the step during which the two overlap, ascending and apart from each other. `sensor` is a
-// place in SensorStore::sensors. Bounds of the sensor's colliders contain their paths. A convex piece that turns counts
-// as inside from when it first to when it last touches a piece of the sensor in a segment of its path; a mesh or height
-// field counts as one piece. Of two of these, or half spaces, only the ends of the step are looked at.
+// Appends the disjoint intervals of the step during which the two overlap, ascending. `sensor` is an index in
+// SensorStore::sensors. Bounds of the sensor's colliders must contain their paths. A rotating convex collider counts as
+// inside from its first to its last touch of a sensor's collider in a segment of its path; a mesh or height field
+// counts as one collider. For two of these, or half spaces, only the ends of the step are tested.
 void FindVisits(const CollisionView& view, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
                 AtStart atStart, std::vector<SensorVisit>& visits);
 

@@ -1,5 +1,5 @@
-// Islands are found only when some body has been slow for long enough: nothing else needs them. An island sleeps when
-// all its bodies are slow.
+// Islands are only computed if some body has been slow for long enough. An island falls asleep when all its bodies have
+// been.
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/Sleeping.h>
 
@@ -10,7 +10,7 @@ namespace fulcrum {
 void Sleep(const StepContext& step, uint32_t candidates, const SleepStores& stores, PairStore& pairs,
            CollidersOutsideFatBounds& outsideFatBounds, ScratchArena& scratch) {
     BodyStore& bodies = stores.bodies;
-    // Kinematic bodies that stand still have nothing to do.
+    // Kinematic bodies without velocity are put to rest.
     bool rested = false;
     for (size_t i = bodies.awake.size(); i-- > 0;) {
         const uint32_t body = bodies.awake[i];
@@ -24,7 +24,7 @@ void Sleep(const StepContext& step, uint32_t candidates, const SleepStores& stor
         const size_t count = bodies.awake.size();
         const std::span<uint32_t> roots = scratch.Allocate<uint32_t>(count);
         FindAwakeIslands(bodies, pairs, stores.coloring, roots);
-        // An island may sleep unless one of its bodies objects.
+        // An island may sleep unless one of its bodies must stay awake.
         std::span<uint8_t> awake = scratch.Allocate<uint8_t>(count);
         std::fill(awake.begin(), awake.end(), uint8_t(0));
         for (size_t i = 0; i < count; ++i) {
@@ -32,7 +32,7 @@ void Sleep(const StepContext& step, uint32_t candidates, const SleepStores& stor
             if (d.motion != MotionType::Dynamic || d.slowSeconds < step.settings.sleep.seconds || !d.allowSleep)
                 awake[roots[i]] = 1;
         }
-        // What a belt carries, however slowly, does not rest.
+        // Bodies on a moving surface stay awake, however slow it is.
         if (step.listener)
             pairs.active.Visit([&](uint32_t index) {
                 const Pair& pair = pairs.pairs[index];

@@ -1,13 +1,13 @@
-// The solver loop is a sequence of verbs. Groups of small islands run it whole, each on one worker. The large islands
-// run it as a sequence of short parallel phases: one per color, iteration and substep, and two over the bodies per
-// substep. Colors come in ascending order, what fitted no color after them, one by one. Within a color joints come
-// before contacts: non-penetration wins.
+// The solver loop is a sequence of verbs. For groups of small islands one worker runs the whole sequence. For large
+// islands it is a sequence of short parallel phases: one per color, iteration and substep, and two over the bodies per
+// substep. Colors are solved in ascending order, then the constraints without a color, serially. Within a color joints
+// come before contacts, so non-penetration wins.
 //
-// Only bodies that a constraint touches take part; the others are moved by Store, in one go.
+// Only bodies with constraints take part; the others are moved by Store.
 //
-// The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep give
-// each body the same change of velocity again, and that is its velocity at the substep's end minus what it was without
-// constraints. Rows of contacts do not change within a step; joints add what the turning of their parts changes.
+// The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep change
+// each body's velocity by the same amount again, which is the difference of its solved and unconstrained velocities.
+// Rows of contacts are constant within a step; joints add the change due to the rotation of their parts.
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
@@ -43,11 +43,11 @@ enum class Verb : uint8_t {
 struct Phase {
     Verb verb;
     uint8_t substep;
-    uint16_t color;  // of the large group, from 0; the number of its colors means the overflow
-    bool isLast;     // over batches, of its substep
+    uint16_t color;  // of the large group, from 0; equal to the number of its colors: the overflow
+    bool isLast;     // last phase over batches of its substep
 };
 
-// Contacts of moving bodies are streamed: the next batch is on its way while this one is solved.
+// Prefetches the next batch while this one is solved.
 FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) {
     using Batch = ContactBatch<kLanes, false>;
     const char* bytes = reinterpret_cast<const char*>(&batch);
@@ -60,15 +60,14 @@ bool IsOverBodies(Verb verb) {
     return verb == Verb::IntegrateVelocities || verb == Verb::ClearPulls || verb == Verb::IntegratePoses;
 }
 
-// Each substep ends with a pass over batches.
+// Each substep ends with a verb over batches.
 bool IsLastOfSubstep(std::span<const Verb> verbs, size_t i) {
     return i + 1 == verbs.size() || verbs[i + 1] == Verb::NextSubstep;
 }
 
 class StepSolver {
 public:
-    // pseudo: room for the pseudo-velocities of all bodies, zero; null where the group has no joints that are far
-    // apart.
+    // pseudo: zeroed pseudo-velocities of all bodies; null if the group has no joints that are far apart.
     StepSolver(const MovedBodies& moved, SolverLayout& layout, const SolverGroup& group, const Effort& effort,
                BodyState* pseudo)
         : moved_(moved),
@@ -144,7 +143,7 @@ private:
             for (const uint32_t body : bodies) pseudo_[body] = {};
     }
 
-    // What the trees of a group do before its batches take their turn.
+    // Runs the trees of a group, before its batches.
     void RunTrees(Verb verb, uint8_t substep) {
         JointBatch<kLanes>* batches = layout_.joints.batches.data();
         BodyState* states = bodies_.states.data();
@@ -163,7 +162,7 @@ private:
             case Verb::WarmStart: factorize(); break;
             case Verb::FirstVelocities:
                 if (substep > 0)
-                    for (JointBatch<kLanes>& batch : own) TurnJoints(batch, states);
+                    for (JointBatch<kLanes>& batch : own) RotateJointImpulses(batch, states);
                 solve(false);
                 break;
             case Verb::Velocities: solve(false); break;
@@ -190,7 +189,7 @@ private:
         }
     }
 
-    // Those of a group's colors lie one after the other.
+    // The batches of a group's colors are contiguous.
     std::span<JointBatch<kLanes>> JointBatchesOf(const SolverGroup& group) const {
         if (group.colorsBegin == group.colorsEnd) return {};
         const uint32_t begin = layout_.colors[group.colorsBegin].of[kJoints].begin,
@@ -198,9 +197,9 @@ private:
         return std::span(layout_.joints.batches).subspan(begin, end - begin);
     }
 
-    // Batches [begin, end) of a color, kind after kind.
+    // Runs batches [begin, end) of a color, kind after kind.
     void RunBatches(const Phase& phase, const ColorBatches& color, uint32_t begin, uint32_t end) {
-        uint32_t first = 0;  // of the kind, among all of the color
+        uint32_t first = 0;  // index of the kind's first batch within the color
         ForEachBatchList(layout_, [&](auto& list, BatchKind kind) {
             const BatchRange& range = color.of[kind];
             const uint32_t last = first + range.Count();
@@ -229,8 +228,7 @@ private:
         BodyState* states = bodies_.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
-            // Poses move with these velocities from the beginning of the substep to its end: they are those of its
-            // middle.
+            // Poses are integrated with these velocities over the whole substep: they approximate those at its middle.
             case Verb::FirstVelocities:
             case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
             case Verb::FirstPull:
@@ -248,7 +246,7 @@ private:
         }
     }
 
-    // Of joints, balls or others.
+    // For joints, ball joints or others.
     template <class Batch>
     void RunBatch(Verb verb, uint8_t substep, Batch& batch) {
         BodyState* states = bodies_.states.data();
@@ -301,9 +299,9 @@ private:
     float h_;             // s, of a substep
 };
 
-// Passes over the pseudo-velocities of a group in which joints are far apart, in each substep.
+// Iterations over the pseudo-velocities per substep, for groups with joints that are far apart.
 constexpr int kPullIterations = 4;
-// And further ones over contacts alone: non-penetration wins.
+// Additional iterations over contacts only, so that non-penetration wins.
 constexpr int kStopIterations = 2;
 
 // The solver loop as the sequence of its verbs. pulls: some joints are far apart.
@@ -328,13 +326,13 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, Scratch
         const Verb first = corrects ? Verb::FirstCorrection : Verb::FirstRelax,
                    next = corrects ? Verb::Correction : Verb::Relax;
         for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? first : next;
-        // The next substep must know how far apart the points are.
+        // The next substep needs current separations.
         if (corrects || settings.positionIterations == 0) verbs[n++] = Verb::Separations;
     }
     return verbs.first(n);
 }
 
-// The same for a large group: a phase per color. What fitted no color is solved with the first group.
+// The same for a large group: a phase per color. Constraints without a color are solved with the first group.
 std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout& layout, const SolverGroup& group,
                                 ScratchArena& scratch) {
     const bool overflows = &group == &layout.groups.front() && layout.OverflowCount() > 0;
@@ -354,7 +352,7 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout&
     return phases.first(n);
 }
 
-// Whether joints of the group are far apart.
+// Whether some joint of the group is far apart.
 bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
     const auto isAnyFar = [](const auto& batches) {
         if constexpr (requires { batches[0].far; })
@@ -372,8 +370,8 @@ bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
     return far;
 }
 
-// Runs the verbs that loopOf(effort, whether joints are pulled) names over every group. far: some joints are far apart,
-// and to be pulled.
+// Runs the verbs returned by loopOf(effort, whether joints are pulled) for every group. far: some joints are far apart
+// and are pulled.
 template <class LoopOfEffort>
 void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& layout, bool far,
               const StepWorkers& workers, LoopOfEffort&& loopOf) {

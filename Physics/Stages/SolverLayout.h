@@ -14,30 +14,29 @@
 
 namespace fulcrum {
 
-// Islands that are solved together. The first group holds the large islands, which are solved
-// color by color on all workers. Each of the others is a handful of small islands that one worker solves from beginning
-// to end, in its own cache and without a barrier. Which islands share a group has no influence on any result.
-// An island that is to be solved with an effort of its own, or that has trees of joints, has a group of its own; a
-// large one without trees is solved on all workers, too.
+// Islands that are solved together. The first group contains the large islands, which are solved color by color on all
+// workers. Each other group contains some small islands, which one worker solves from start to end, in its own cache
+// and without barriers. The grouping does not influence results. An island with an effort of its own, or with trees of
+// joints, has a group of its own; a large one without trees is solved on all workers, too.
 struct SolverGroup {
     bool isLarge = false;                     // solved color by color on all workers
     uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
     uint32_t bodiesBegin = 0, bodiesEnd = 0;  // into SolverLayout::bodies
-    LeastEffort effort{};                     // beyond the system's
-    uint32_t culprit = ~0u;                   // the body that asked for most of it
-    // Of islands under load: how long the substeps are for which springs are not too stiff, as a part of the system's:
-    // 2^(-(i - 1) / 16). It follows the substeps slowly where they become shorter: springs that were suddenly stiffer
-    // would throw apart what softer ones have let sink. 0: those of the substeps.
+    LeastEffort effort{};                     // minimum effort, if more than the system's
+    uint32_t culprit = ~0u;                   // the body that requires most of it
+    // For islands under load: the substep that determines the stiffness of soft rows, as a fraction of the system's:
+    // 2^(-(i - 1) / 16). It follows shorter substeps slowly: a sudden increase of stiffness would accelerate bodies
+    // that have sunk with softer rows. 0: the stiffness of the actual substeps.
     uint8_t stiffness = 0, wantedStiffness = 0;
     uint32_t treesBegin = 0, treesEnd = 0;  // into SolverLayout::treesByGroup
     bool HasTrees() const { return treesEnd > treesBegin; }
     bool IsOwn() const { return HasTrees() || effort.IsAny(); }
 };
 
-// What a color is solved in: kinds of batches, in this order.
+// Kinds of batches of a color, in the order of solving.
 enum BatchKind : uint32_t { kBalls, kJoints, kMovingContacts, kFixedContacts, kBatchKinds };
 
-// Batches [begin, end) of a kind; of contacts, those that hold [first, first + contacts) of its list.
+// Batches [begin, end) of a kind; for contacts, they contain [first, first + contacts) of its list.
 struct BatchRange {
     uint32_t first = 0, contacts = 0;
     uint32_t begin = 0, end = 0;
@@ -56,7 +55,7 @@ struct ColorBatches {
 // The batches of a kind, by group and color.
 template <class Batch>
 struct BatchList {
-    std::vector<Batch> batches;  // as many as were ever in use
+    std::vector<Batch> batches;  // never shrinks, to keep memory
     uint32_t count = 0;          // in use
 };
 template <class Batch>
@@ -73,11 +72,11 @@ size_t HeapBytes(const ContactBatchList<kFixedB>& list) {
            list.contacts.capacity() * sizeof(ConstraintColoring::Entry);
 }
 
-// A colored joint. Batches have joints of the same locks, and best of as many rows.
+// A joint with a color. Batches contain joints with the same locks, preferably with the same number of rows.
 struct ListedJoint {
-    uint32_t kind;  // how it is solved << 8 | rows
+    uint32_t kind;  // JointKind << 8 | number of rows
     uint32_t joint;
-    uint32_t body;  // one that it moves
+    uint32_t body;  // a dynamic body of it
     uint32_t color;
     friend auto operator<=>(const ListedJoint&, const ListedJoint&) = default;
 };
@@ -85,33 +84,33 @@ struct ListedJoint {
 struct SolverLayout {
     std::vector<SolverGroup> groups;  // empty: nothing to solve
     std::vector<ColorBatches> colors;
-    std::vector<uint32_t> bodies;  // dynamic ones that a constraint touches, by group
+    std::vector<uint32_t> bodies;  // dynamic bodies with constraints, by group
     BatchList<BallBatch<kLanes>> balls;
     BatchList<JointBatch<kLanes>> joints;
     ContactBatchList<false> moving;
     ContactBatchList<true> fixed;
-    // Of the first group: solved one by one, at last.
+    // Constraints without a color: solved serially after the first group's colors.
     std::vector<JointBatch<1>> overflowJoints;
     std::vector<ContactBatch<1, false>> overflowMoving;
     std::vector<ContactBatch<1, true>> overflowFixed;
-    std::vector<JointRows<kLanes>> jointRows;  // room for the batches' rows
+    std::vector<JointRows<kLanes>> jointRows;  // storage of the batches' rows
     std::vector<JointRows<1>> overflowRows;
-    std::vector<ListedJoint> listedJoints;  // in order
-    uint64_t jointVersion = 0;              // of the coloring that this list was made from
+    std::vector<ListedJoint> listedJoints;  // sorted
+    uint64_t jointVersion = 0;              // version of the coloring from which the list was made
     JointTrees trees;
-    std::vector<uint32_t> treesByGroup;  // indices of trees
-    std::vector<ContactNote> notes;      // by pair, zero but of those in batches; empty without contact events
+    std::vector<uint32_t> treesByGroup;  // indices of trees, by group
+    std::vector<ContactNote> notes;      // by pair, zero if not in a batch; empty without contact events
     uint32_t colorCount = 0;             // colors in use
     uint32_t islands = 0;
-    uint64_t version = 0;      // of the coloring that this was made from
-    uint64_t loadVersion = 0;  // PairStore's
+    uint64_t version = 0;      // version of the coloring from which this was made
+    uint64_t loadVersion = 0;  // version of PairStore's loads
 
     bool HasJoints() const { return balls.count + joints.count > 0 || !overflowJoints.empty(); }
-    size_t OverflowCount() const;  // of constraints
+    size_t OverflowCount() const;  // number of constraints without a color
 };
 
-// Calls f(list, BatchKind) for each kind of batch. A new kind is an enumerator, a list and a line here; what stages do
-// with it are overloads for its batches.
+// Calls f(list, BatchKind) for each kind of batch. A new kind needs an enumerator, a list and a line here, and
+// overloads for its batches in the stages.
 template <class Layout, class F>
 void ForEachBatchList(Layout& layout, F&& f) {
     f(layout.balls, kBalls);
@@ -120,7 +119,7 @@ void ForEachBatchList(Layout& layout, F&& f) {
     f(layout.fixed, kFixedContacts);
 }
 
-// Calls f(batches) for each kind of what fitted no color, in the order in which it is solved.
+// Calls f(batches) for each kind of batches without a color, in the order of solving.
 template <class Layout, class F>
 void ForEachOverflowList(Layout& layout, F&& f) {
     f(layout.overflowJoints);

@@ -1,10 +1,12 @@
 #include <Fulcrum/Physics/Stages/Step.h>
 
+#include <Fulcrum/Physics/StepObserver.h>
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/SteadyPushes.h>
 
 #include <algorithm>
 #include <chrono>
@@ -21,7 +23,7 @@ struct Stage {
     void (*run)(WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers);
 };
 
-// The pairs of what moved, or woke.
+// Finds the pairs of bodies that moved or woke.
 void FindPairsOf(WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
     FindPairs(step, world.joints, world.bodies, world.colliders, world.pairs, world.coloring, state.pairs, state.crowd,
               workers);
@@ -32,7 +34,7 @@ void SettleStoppedIn(WorldState& world, const StepWorkers& workers) {
     SettleStopped(workers.findings, world.colliders, world.bodies, world.pairs, world.joints, world.coloring);
 }
 
-// The order in which they run, and what each is given.
+// The stages in the order in which they run, with their arguments.
 constexpr Stage kStages[] = {
     {"UpdateBounds",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
@@ -44,7 +46,7 @@ constexpr Stage kStages[] = {
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          Collide(step, world.bodies, world.colliders, world.joints, world.coloring, world.pairs, state.pairs, workers,
                  state.report);
-         // What wakes searches for pairs of its own at once: what is hit must not lose its support for a step.
+         // Woken bodies search for pairs at once: they must not lose their support for a step.
          while (WakeHit(world.pairs, state.pairs.changes, world)) {
              FindPairsOf(world, state, step, workers);
              if (state.pairs.activated.empty()) break;
@@ -111,7 +113,7 @@ double Milliseconds(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double, std::milli>(to - from).count();
 }
 
-// Forgets the bodies that were removed since the last step, and all pairs that they were part of.
+// Frees the bodies that were removed since the last step, and removes all their pairs.
 void ForgetRemoved(WorldState& world) {
     if (world.removed.empty() && !world.colliders.movedHasEmpty) return;
     VisitPairsOf(world.bodies, world.colliders, world.pairs, world.removed,
@@ -155,14 +157,15 @@ void BeginReport(WorldState& world, StepState& state) {
     }
 }
 
-// A step shorter than this, in seconds, moves nothing that a float could tell; its inverse would only overflow.
+// s: shorter steps are skipped; their motion is below float precision, and their inverse would overflow.
 constexpr double kShortestStep = 1e-9;
 
-// Impulses of a short step, scaled up to a long one, are mostly its noise: steps that alternate between 1/240 and 1/30
-// s threw a stack of six boxes over with no limit, and leave one of ten standing with this one.
+// Limit of the warm start's scale: impulses of a short step scaled up to a long one are mostly noise. With steps
+// alternating between 1/240 and 1/30 s a stack of six boxes fell over without the limit; with it one of ten boxes
+// stands.
 constexpr float kMostImpulseScale = 2;
 
-// Of the stiffnessDt of the step before, which a shorter step keeps at least.
+// Fraction of the last step's stiffnessDt that a shorter step keeps at least.
 constexpr float kStiffnessDecay = 0.95f;
 
 StepContext ContextOf(const WorldState& world, const StepState& last, double dt) {
@@ -173,12 +176,12 @@ StepContext ContextOf(const WorldState& world, const StepState& last, double dt)
             .dt = static_cast<float>(dt),
             .substepDt = substepDt,
             .impulseScale = last.lastSubstepDt > 0 ? std::min(substepDt / last.lastSubstepDt, kMostImpulseScale) : 1.0f,
-            // Springs as stiff as short steps allow would throw apart what long ones let sink.
+            // With the stiffness that short steps allow, bodies that sank during long ones would be thrown apart.
             .stiffnessDt = std::max(substepDt, kStiffnessDecay * last.stiffnessDt),
             .softness = SoftnessOf(world.settings, substepDt)};
 }
 
-// The greater effort does; of equal ones that of the body of the lower index.
+// Greater effort first; ties by the lower body index.
 bool ComesBefore(const IslandEffortReport& a, const IslandEffortReport& b) {
     return std::tie(b.substeps, b.velocityIterations, b.positionIterations, a.culprit.index) <
            std::tie(a.substeps, a.velocityIterations, a.positionIterations, b.culprit.index);
@@ -200,7 +203,7 @@ void ReportEfforts(const SolverSettings& settings, const BodyStore& bodies, cons
 }
 
 void CountBodies(const WorldState& world, const SolverLayout& solver, StepReport& report) {
-    report.bodies = world.bodies.Count();
+    report.bodies = world.bodies.Count() - (world.bodies.worldBody != BodyStore::kNone);
     report.awakeBodies = static_cast<uint32_t>(world.bodies.awake.size());
     report.islands = solver.islands;
     report.pairs = static_cast<uint32_t>(world.pairs.active.Size());
@@ -208,13 +211,15 @@ void CountBodies(const WorldState& world, const SolverLayout& solver, StepReport
         report.joints += static_cast<uint32_t>(world.coloring.At(c).Of(ConstraintColoring::Kind::Joint).size());
 }
 
-// Notes how long each took.
+// Runs all stages and records their times.
 void RunStages(WorldState& world, StepState& state, const StepContext& step) {
     const StepWorkers workers{*world.jobs, state.findings, state.scratch};
     const Clock::time_point start = Clock::now();
     Clock::time_point last = start;
     for (size_t i = 0; i < std::size(kStages); ++i) {
+        if (world.observer) world.observer->BeginStage(static_cast<int>(i), kStages[i].name);
         kStages[i].run(world, state, step, workers);
+        if (world.observer) world.observer->EndStage(static_cast<int>(i), kStages[i].name);
         const Clock::time_point now = Clock::now();
         state.report.stageMs[i] = Milliseconds(last, now);
         last = now;
@@ -229,12 +234,16 @@ const char* StageName(int stage) { return kStages[stage].name; }
 void RunStep(WorldState& world, StepState& state, double dt) {
     ForgetRemoved(world);
     BeginReport(world, state);
+    if (world.observer) world.observer->BeginStep(world.step);
     if (dt >= kShortestStep) {
         const StepContext step = ContextOf(world, state, dt);
         state.scratch.Reset();
         state.sweeps.isKept = world.bodies.continuousCount > 0 || !world.sensors.IsEmpty();
         state.sweeps.reportsHits = world.settings.events.contacts;
+        BeginPushes(world);
+        BeginSingleMoves(world.bodies);
         RunStages(world, state, step);
+        EndPushes(world.bodies);
         state.events.events.brokenJoints = state.events.broken;
         state.lastSubstepDt = step.substepDt;
         state.stiffnessDt = step.stiffnessDt;
@@ -243,6 +252,7 @@ void RunStep(WorldState& world, StepState& state, double dt) {
         for (const WorkerFindings& f : state.findings) state.report.libccd += f.libccd;
     }
     CountBodies(world, state.solver, state.report);
+    if (world.observer) world.observer->EndStep(world.step);
 }
 
 }  // namespace fulcrum

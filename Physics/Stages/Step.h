@@ -5,7 +5,7 @@
 
 namespace fulcrum {
 
-// Advances the world by dt seconds, and fills the report. Less than a nanosecond changes nothing.
+// Advances the world by dt seconds, and fills the report. Less than a nanosecond has no effect.
 void RunStep(WorldState& world, StepState& state, double dt);
 
 }  // namespace fulcrum

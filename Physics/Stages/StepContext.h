@@ -1,4 +1,4 @@
-// What all stages of a step are given: what holds for it, and who works on it. Made anew by each step.
+// Arguments of all stages of a step: constants and workers. Created by each step.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -12,7 +12,7 @@ namespace fulcrum {
 class ContactListener;
 struct WorkerFindings;
 
-// What holds for the whole step. No stage changes it.
+// Constants of the whole step. No stage changes them.
 struct StepContext {
     const SystemSettings& settings;
     const ContactListener* listener;  // null: none
@@ -20,11 +20,11 @@ struct StepContext {
     float dt;                         // s, > 0
     float substepDt;                  // s, of the settings' substeps
     float impulseScale;               // dt of its substeps / dt of the last step's, at most 2: scales the warm start
-    float stiffnessDt;  // s: the longest of the last substeps, for which contacts and joints are not too stiff
-    float softness;     // s^2, of contacts in the settings' substeps: see SinkScale
+    float stiffnessDt;                // s: maximum over the last substeps; limits the stiffness of contacts and joints
+    float softness;                   // s^2, of contacts in the settings' substeps: see SinkScale
 };
 
-// Who does the work of a stage, and in what memory.
+// The workers and scratch memory of a stage.
 struct StepWorkers {
     JobSystem& jobs;
     std::span<WorkerFindings> findings;  // by worker

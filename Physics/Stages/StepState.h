@@ -1,4 +1,5 @@
-// What the stages of a step hand on to each other, and what they keep from step to step. All else is the world's.
+// Data that the stages of a step pass on to each other, and that they keep from step to step. All other state belongs
+// to the world.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
@@ -18,14 +19,14 @@
 
 namespace fulcrum {
 
-// A manifold that a pair with a surface has beyond those it had.
+// An additional manifold of a pair with a surface, not stored in a slot yet.
 struct MoreManifold {
     uint32_t pair;
-    uint32_t order;  // among those of the pair
+    uint32_t order;  // index among those of the pair
     SurfaceManifold contact;
 };
 
-// One worker's own findings in a stage; merged in an order that does not depend on who found what.
+// One worker's results of a stage; merged in an order that does not depend on the distribution of work.
 struct alignas(64) WorkerFindings {
     std::vector<uint32_t> colliders;         // UpdateBounds: those that left their fat bounds
     std::vector<uint32_t> outsideFatBounds;  // Continuous: those that the solver moved out of them
@@ -33,9 +34,9 @@ struct alignas(64) WorkerFindings {
     uint32_t deepPairs = 0;                  // FindPairs: how many of these pairs overlap deeply
     std::vector<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
     std::vector<uint32_t> crowdedOverlaps;   // Collide: crowded bodies and their levels, once for each contact
-    SurfaceContacts surface;                 // Collide: room to work in
+    SurfaceContacts surface;                 // Collide: temporary
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
-    std::vector<MoreManifold> more;                                    // Collide: what has no place in its pair yet
+    std::vector<MoreManifold> more;                                    // Collide: manifolds without a slot yet
     std::vector<SweepHit> sweepHits;                                   // Continuous
     std::vector<uint64_t> sensorCandidates;                            // Sense
     std::vector<SensorVisit> sensorVisits;                             // likewise
@@ -48,28 +49,28 @@ struct alignas(64) WorkerFindings {
     uint32_t clamped = 0, frozen = 0;
     uint32_t firstFrozen = ~0u;
     uint32_t sleepCandidates = 0;  // bodies that have been slow for long enough
-    bool loadsChanged = false;     // Store: of some contacts, see ContactLoads.h
+    bool loadsChanged = false;     // Store: some load level changed, see ContactLoads.h
     JointFindings joints;          // Prepare
 };
 
 size_t HeapBytes(const WorkerFindings& findings);
 
-// A body that deeply overlapped many others and disperses (Stages/Crowd.h): until there is room it does not collide
-// with dynamic bodies and gravity does not act on it, and it moves with `push` on top of its own velocity.
+// A body that deeply overlapped many others and disperses (Stages/Crowd.h): until there is free space it neither
+// collides with dynamic bodies nor feels gravity, and it moves with `push` in addition to its own velocity.
 struct DispersingBody {
     uint32_t body;
-    Vector3 direction;                  // of the push without a place, of length 1 at most: a part of the fastest push
-    bool hasPlace = false;              // it moves to `place`
-    Position place = Position::Zero();  // m
-    float secondsLeft = 0;              // until it is to be there; below zero since then
-    uint64_t startStep = 0;             // the step in which it started
+    Vector3 direction;      // of the push if it has no target position; length 0..1, as a fraction of the largest push
+    bool hasPlace = false;  // whether it moves to `place`
+    Position place = Position::Zero();                              // m
+    float secondsLeft = 0;                                          // until it should arrive; negative afterwards
+    uint64_t startStep = 0;                                         // the step in which it started
     Vector3 push = Vector3::Zero(), ownVelocity = Vector3::Zero();  // m/s, of this step
 };
 
-// What Collide found out about an active pair that the rest of the world must hear of.
+// Change of an active pair found by Collide, which later stages handle.
 enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
 
-// What FindPairs and Collide hand on about pairs; all of this step.
+// Results of FindPairs and Collide about pairs of this step.
 struct PairUpdates {
     std::vector<uint64_t> found;              // FindPairs: keys of new and of resting pairs, sorted
     std::vector<uint32_t> activated;          // FindPairs: pairs that it made active
@@ -111,7 +112,7 @@ struct StepState {
 
 size_t HeapBytes(const StepState& step);
 
-// Visits the pairs with a change, in ascending order; in most steps that are few.
+// Visits the pairs with a change, in ascending order; usually few.
 template <class Visitor>
 void VisitChanges(std::span<const PairChange> changes, Visitor&& visit) {
     const size_t count = changes.size();

@@ -1,4 +1,4 @@
-// Impulses of the batches go back to the records of contacts and joints, and what contacts carried to their loads.
+// Writes the impulses of the batches back to the records of contacts and joints, and updates their load levels.
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -9,19 +9,19 @@ namespace fulcrum {
 
 namespace {
 
-// Where impulses are stored. The bodies are read.
+// Destination of the impulses. Bodies are only read.
 struct Records {
     const BodyStore& bodies;
     PairStore& pairs;
     JointStore& joints;
 };
 
-// How the batches of a group are stored.
+// Scales for storing the batches of a group.
 struct StoreScale {
     float dt;               // s, of the step
     float impulseScale;     // see Effort
-    const SinkScale* sink;  // of contacts; null where nobody asks how deep they sink
-    const GapScale* gap;    // of joints; null where nobody asks how far their anchors are apart
+    const SinkScale* sink;  // for contacts; null if load levels are off
+    const GapScale* gap;    // for joints; null if load levels are off
 };
 
 template <int N, bool kFixedB>
@@ -51,17 +51,17 @@ void StoreAll(const Records& to, const std::vector<Batch>& batches, uint32_t beg
     });
 }
 
-// How often loads that became less are noted, in steps.
+// Period in steps in which load levels may decrease.
 constexpr uint64_t kStepsToForget = 16;
 
 }  // namespace
 
-// Groups lie one after the other: those without an effort of their own are stored together.
+// Batches of groups are contiguous: consecutive groups without an effort of their own are stored together.
 void StoreImpulses(const StepContext& step, const BodyStore& bodies, const SolverLayout& layout, PairStore& pairs,
                    JointStore& joints, const StepWorkers& workers) {
     const SystemSettings& settings = step.settings;
     const Records to{bodies, pairs, joints};
-    const bool notesSinks = HeedsLoads(settings), notesGaps = HeedsGaps(settings);
+    const bool notesSinks = AdaptsToLoads(settings), notesGaps = AdaptsToGaps(settings);
     const bool notesLarge = settings.accuracy.largeIslands || layout.OverflowCount() > 0;
     // impulseScale: see Effort; stiffness: see LoadLevel. Springs are those of `springs` of the system's substep.
     const auto sinkScaleOf = [&](float impulseScale, float springs, uint8_t stiffness) {

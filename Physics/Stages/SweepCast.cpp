@@ -15,30 +15,30 @@ namespace fulcrum {
 
 namespace {
 
-// A body may move by half its thickness before it is cast, and a hit counts once the two would overlap by a quarter.
-// Where they close in by more than that in a step, by a fifth of that: the solver is to push apart what overlaps, not
-// to stop what is as fast as that.
-constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthPart = 0.2f;
-// What a shape as large as a surface does with each triangle in turn depends on all of them. A cast that has looked at
-// so many is left to the contacts: its time must not grow with the square of the surface.
+// A body may move by half its thickness before it is cast, and a hit counts if the overlap would reach a quarter of the
+// thickness. If the approach in a step exceeds that, a fifth of it is enough: the solver should recover overlaps, not
+// stop such fast bodies.
+constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthFraction = 0.2f;
+// Limit of triangles tested by a cast of a shape as large as the surface: beyond it the cast is left to the contacts,
+// since its time would grow with the square of the surface's size.
 constexpr size_t kMostTriangles = 20000;
-// What has hardly any thickness counts as that thick, in parts of its size.
+// Minimum thickness, as a fraction of the size.
 constexpr float kLeastThickness = 0.01f;
 
 float Thickness(float innerRadius, float outerRadius) { return std::max(innerRadius, kLeastThickness * outerRadius); }
-// Of the thinner of two.
+// Thickness of the thinner of two shapes.
 float Thickness(const Shape& a, const Shape& b) {
     return Thickness(std::min(a.InnerRadius(), b.InnerRadius()), std::min(a.OuterRadius(), b.OuterRadius()));
 }
 
-// Whether two balls whose centers are `apart` and close in by `motion` come within `reach` of each other.
+// Whether two spheres with center offset `apart` and relative displacement `motion` come within `reach` of each other.
 bool BallsMeet(const Vector3& apart, const Vector3& motion, float reach) {
     const float along = -Dot<float>(apart, motion), square = LengthSquared(motion);
     const float part = square > 0 ? std::clamp(along / square, 0.0f, 1.0f) : 0.0f;
     return LengthSquared(Vector3(apart + motion * part)) <= reach * reach;
 }
 
-// The rotation vector of q, which may have turned several times, that is nearest to a guess.
+// The rotation vector of q nearest to a guess; q may include several revolutions.
 Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
     constexpr float kTwoPi = 6.28318530717958647692f;
     const Vector3 shortest = RotationVectorOf(q);
@@ -49,7 +49,7 @@ Vector3 TurnNear(const Quaternion& q, const Vector3& guess) {
     return shortest + axis * (turns * kTwoPi);
 }
 
-// A sweep whose turn, half the cost of it, is found when it is first needed.
+// A sweep whose rotation, half of its cost, is computed when first needed.
 struct LazySweep {
     Sweep sweep;
     bool hasTurn = true;
@@ -95,7 +95,7 @@ public:
         local_ = LocalOf(view_.bodies, view_.colliders, collider);
         shape_ = cast_ = static_cast<const ConvexShape*>(piece_->shape);
         motion_ = {sweep_.start, sweep_.displacement};
-        CastAgainst(other, ShapeCaster(*shape_, motion_, view_.step.settings.narrowPhase));
+        CastAnew(other, ShapeCaster(*shape_, motion_, view_.step.settings.narrowPhase));
         return found_;
     }
 
@@ -119,9 +119,9 @@ private:
                                  : Inflated({Vector3::Zero(), Vector3::Zero()}, cast_->OuterRadius() * 1.000001f);
         const TreeRay ray(motion_.pose.position - view_.colliders.boundsOrigin + about.Center().cast<double>(),
                           motion_.displacement, about.HalfExtents());
-        const auto visit = [&](uint32_t other) { CastAgainst(other, straight); };
+        const auto visit = [&](uint32_t other) { CastAnew(other, straight); };
         const uint32_t layers = view_.step.settings.layerCollides[view_.bodies.dynamics[sweep_.body].layer];
-        // Dispersing bodies do not collide with dynamic ones; to visit all that they overlap would cost n^2.
+        // Dispersing bodies do not collide with dynamic ones; visiting all overlaps would cost n^2.
         if ((layers & view_.colliders.movingLayers) && !view_.bodies.dynamics[sweep_.body].dispersing)
             view_.colliders.movingTree.CastRay(ray, limit_, visit);
         if (layers & view_.colliders.staticLayers) view_.colliders.staticTree.CastRay(ray, limit_, visit);
@@ -129,15 +129,22 @@ private:
 
     static bool IsBall(const ColliderShape& piece) { return piece.shape->Type() == ShapeType::Sphere && !piece.offset; }
 
-    // Whether the cast of a piece of the given radius about its body's center takes its turn into account: where points
-    // move by it by a part of the depth that counts, or always.
+    // Whether the cast of a shape with the given radius about its body's center includes rotation: if points move by it
+    // by a fraction of the depth that counts, or always.
     static bool TurnMatters(const ColliderShape& piece, const Sweep& sweep, float radius, float depth, float start) {
-        constexpr float kPart = 0.25f;
+        constexpr float kTurnFraction = 0.25f;
         if (IsBall(piece) || sweep.turn.isZero(0)) return false;
-        return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kPart * depth;
+        return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kTurnFraction * depth;
     }
 
-    // `straight`: of the whole motion, without the turn.
+    // The limits of effort are per candidate: the order in which the trees find candidates must not matter.
+    void CastAnew(uint32_t other, const ShapeCaster& straight) {
+        restarts_ = 0;
+        triangles_ = 0;
+        CastAgainst(other, straight);
+    }
+
+    // `straight`: caster of the whole motion, without rotation.
     void CastAgainst(uint32_t other, const ShapeCaster& straight, float from = 0) {
         const uint32_t body = view_.colliders.colliders[other].body;
         if (!MayCollide(view_, sweep_.body, body) || !ListenerAllows(view_, sweep_.body, body)) return;
@@ -147,7 +154,7 @@ private:
         const RelativePose theirLocal = LocalOf(view_.bodies, view_.colliders, other);
         const float theirRadius = piece.shape->OuterRadius() + (piece.offset ? Length(theirLocal.position) : 0.0f);
         const float start = std::max({sweep_.from, theirSweep.from, from});
-        // Seen from the other.
+        // Relative to the other.
         Pose at = start > theirSweep.from ? theirSweep.PoseAt(start) : theirSweep.start;
         Vector3 others = theirSweep.DisplacementRate() * (1 - start);
         ShapeMotion relative = motion_;
@@ -178,7 +185,7 @@ private:
         }
         if (piece.offset) {
             at = at * theirLocal;
-            // Along the chord of the way that it turns.
+            // Along the chord of its arc.
             const Vector3 chord = Between(at.position, (theirSweep.PoseAt(1) * theirLocal).position);
             relative.displacement = motion_.displacement * rest - chord;
         }
@@ -190,7 +197,7 @@ private:
         if (caster.IsValid()) CastThrough(caster, relative, *piece.shape, at, pieces, straight);
     }
 
-    // What a cast is against, from which time on, and whether one of the two turns so much that the cast follows it.
+    // The target of a cast, its start time, and whether the rotation of one of the two must be included.
     struct Pieces {
         uint32_t other;
         const LazySweep& theirs;
@@ -198,18 +205,18 @@ private:
         bool turn;
     };
 
-    // From the time `start` to the end. `shape`, `at`: of the other.
+    // Casts from the time `start` to the end. `shape`, `at`: of the other.
     void CastThrough(const ShapeCaster& caster, const ShapeMotion& motion, const Shape& shape, const Pose& at,
                      const Pieces& pieces, const ShapeCaster& straight) {
         const Sweep& theirSweep = pieces.theirs.sweep;
         const float start = pieces.start, length = 1 - start;
         ShapeCastSettings settings;
-        // Less than half of what counts where they close in fast: a hit is found by so much too early.
+        // Less than half of the depth that counts for fast approaches: hits are found this much too early.
         settings.tolerance = 0.08f * DepthThatCounts(*view_.colliders.shapes[pieces.other].shape);
         settings.measureDepth = false;
         const auto limit = [&] { return length > 0 ? std::max(0.0f, (best_.time - start) / length) : 0.0f; };
         if (length > 0) settings.maxFraction = std::min(1.0f, limit());
-        float touchTime = 1;  // when it touched, but not so that it counts
+        float touchTime = 1;  // first touch that does not count as a hit
         caster.Visit(shape, at, settings, [&](const ShapeHit& found) {
             if (triangles_ > kMostTriangles) return 0.0f;
             SweepHit hit = HitOf(pieces, theirSweep);
@@ -220,7 +227,7 @@ private:
             }
             return limit();
         });
-        // Without a turn what does not push now never will.
+        // Without rotation a touch that does not count now never will.
         if (pieces.turn && touchTime < best_.time) Follow(motion, pieces, touchTime, straight);
     }
 
@@ -234,8 +241,7 @@ private:
         return hit;
     }
 
-    // Steps along with what turns while it touches, by so little that it cannot come through, until it pushes or is
-    // free.
+    // Follows a rotating shape that touches, in steps too small for tunneling, until it counts as a hit or separates.
     void Follow(const ShapeMotion& motion, const Pieces& pieces, float time, const ShapeCaster& straight) {
         constexpr int kMostSteps = 64, kMostRestarts = 8;
         const Sweep& theirSweep = pieces.theirs.sweep;
@@ -252,22 +258,22 @@ private:
             const Push push = FindPoints(motion, linear, theirSweep, time, depth, hit);
             hit.time = time;
             if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(pieces.other, straight, time);
-            if (!(push.speed > 0 && push.depth > (push.speed > depth ? kFastDepthPart * depth : depth))) continue;
+            if (!(push.speed > 0 && push.depth > (push.speed > depth ? kFastDepthFraction * depth : depth))) continue;
             if (Behaves(hit)) Take(hit);
             return;
         }
-        hit.pointCount = 0;  // not decided yet
+        hit.pointCount = 0;  // undecided
         Take(hit);
     }
 
-    // Notes how the contact is to behave, once the listener was asked; false: it is to be ignored.
+    // Sets the properties of the contact after calling the listener; returns false if the contact is ignored.
     bool Behaves(SweepHit& hit) const {
         const PairMaterial material = MaterialOfPair(view_.bodies, hit.body, hit.other,
                                                      *view_.colliders.shapes[hit.otherCollider].shape, hit.material);
         hit.friction = material.friction;
         hit.restitution = material.restitution;
         if (!view_.step.listener || hit.pointCount == 0) return true;
-        // A is dynamic: the other where the body itself is kinematic.
+        // A is dynamic: the other if the body itself is kinematic.
         const bool swapped = view_.bodies.dynamics[hit.body].motion != MotionType::Dynamic;
         ContactView::Point points[SweepHit::kMaxPoints];
         for (int i = 0; i < hit.pointCount; ++i) points[i] = {hit.center + hit.arms[i].cast<double>(), 0, 0};
@@ -287,10 +293,10 @@ private:
         hit.restitution = change.restitution;
         hit.surfaceVelocity = swapped ? Vector3(-change.surfaceVelocity) : change.surfaceVelocity;
         hit.massOverride = swapped ? change.massOverride.Swapped() : change.massOverride;
-        return !change.ignore;
+        return !change.ignore && !change.isSensor;
     }
 
-    // What is cast only since it was hit leaves to the solver whatever it comes to touch.
+    // Bodies that are cast only because they were hit leave light touches to the solver.
     float DepthThatCounts(const Shape& other) const {
         const float depth = kDepthFraction * Thickness(*shape_, other.IsConvex() ? other : *shape_);
         return isCast_ ? depth : std::min(depth, 0.5f * view_.step.settings.speculativeDistance);
@@ -306,7 +312,7 @@ private:
         limit_ = sweep_.from < 1 ? std::clamp((hit.time - sweep_.from) / (1 - sweep_.from), 0.0f, 1.0f) : 0.0f;
     }
 
-    // Per step, of the body's point against the other's at an instant.
+    // Displacement per step of the body's point relative to the other's at an instant.
     Vector3 VelocityAt(const Position& point, const Position& own, const Vector3& linear, const Sweep& theirSweep,
                        const Position& others) const {
         Vector3 v = linear - Cross<float>(theirSweep.TurnRate(), Between(others, point));
@@ -314,9 +320,9 @@ private:
         return v;
     }
 
-    // Looks a little ahead, to where the two would overlap by as much as may be: their manifold there says in which
-    // direction they push each other, where the cast knows only what touches first. The sides of flush neighbors, or
-    // edges inside a surface, have normals that do not oppose the motion.
+    // Extrapolates to where the two would overlap by the depth that counts: the manifold there has the contact normal,
+    // while the cast only knows what touches first. Sides of flush neighbors and internal edges of a surface have
+    // normals that do not oppose the motion.
     bool Counts(const ShapeMotion& motion, const ShapeHit& found, const Sweep& theirSweep, float length,
                 SweepHit& hit) {
         if (found.isEarly) return found.fraction > 0;
@@ -331,7 +337,7 @@ private:
             const Position own = sweep_.PositionAt(hit.time), others = theirSweep.PositionAt(hit.time);
             approach = -Dot<float>(found.normal, VelocityAt(found.position, own, linear, theirSweep, others));
         }
-        if (approach > depth) depth *= kFastDepthPart;
+        if (approach > depth) depth *= kFastDepthFraction;
         if (!(approach * left > depth)) return false;
         return FindPoints(motion, linear, theirSweep, std::min(1.0f, hit.time + depth / approach), depth, hit).speed *
                    left >
@@ -343,7 +349,7 @@ private:
         float depth = 0;  // m
     };
 
-    // What FindPoints depends on, and what it found.
+    // Arguments and result of FindPoints.
     struct FoundPoints {
         const ColliderShape* piece = nullptr;
         uint32_t otherCollider = 0;
@@ -362,9 +368,9 @@ private:
         }
     };
 
-    // Writes the points of the manifold where the two approach fastest at an instant into the hit; none where they do
-    // not touch. A shape that overlaps many triangles of a surface as the cast begins hits all of them at one time, and
-    // needs the same points again and again: the last two results are cached.
+    // Writes the points of the manifold with the fastest approach at an instant to the hit; none if they do not touch.
+    // A shape that overlaps many triangles of a surface at the start of the cast hits all of them at the same time and
+    // needs the same points repeatedly: the last two results are cached.
     Push FindPoints(const ShapeMotion& motion, const Vector3& linear, const Sweep& theirSweep, float time, float depth,
                     SweepHit& hit) {
         FoundPoints asked{piece_, hit.otherCollider, isTurning_, time, depth, motion.pose.rotation, linear, {}, {}};
@@ -380,7 +386,7 @@ private:
         return asked.push;
     }
 
-    // What FindPoints writes.
+    // Copies what FindPoints writes.
     static void CopyPoints(const SweepHit& from, SweepHit& to) {
         to.pointCount = from.pointCount;
         to.normal = from.normal;
@@ -454,18 +460,18 @@ private:
     const Sweep& sweep_ = own_.sweep;
     WorkerFindings& findings_;
     SweepHit& best_;
-    bool isTurning_ = false;  // whether the body's turn matters to the cast at hand
-    const bool isCast_;       // else only since it was hit, in this step
+    bool isTurning_ = false;  // whether the current cast includes the body's rotation
+    const bool isCast_;       // else cast only because it was hit in this step
     bool found_ = false;
     FoundPoints foundPoints_[2];
     int nextFoundPoints_ = 0;
     int restarts_ = 0;
-    size_t triangles_ = 0;  // that were looked at to see what hits do
-    float limit_ = 1;       // of the sweep, up to where hits are of interest
+    size_t triangles_ = 0;  // tested triangles
+    float limit_ = 1;       // fraction of the sweep up to which hits are wanted
     const ColliderShape* piece_ = nullptr;
     RelativePose local_;                  // of the piece in its body
     const ConvexShape* shape_ = nullptr;  // of the piece
-    const ConvexShape* cast_ = nullptr;   // that, or it about the body's center
+    const ConvexShape* cast_ = nullptr;   // shape_, or shape_ with its offset from the body's center
     ShapeMotion motion_;
 };
 

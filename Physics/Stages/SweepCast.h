@@ -7,22 +7,21 @@
 
 namespace fulcrum {
 
-// A body that moved farther than this in a step, in m, is cast; also how far ahead the solver sees contacts of such
-// bodies.
+// m: a body that moves farther than this in a step is cast; also the speculative distance of such bodies.
 float FreeMotion(float innerRadius, float outerRadius);
 
-// Pieces beside the center of mass change sides of a wall where the body turns, so that compounds are always cast with
-// their turn.
+// Whether casts include rotation. Compounds always do: their children away from the center of mass could change sides
+// of a wall by rotation.
 bool IsCastTurning(const BodyStore& bodies, uint32_t body);
 
-// How a body moves in this step, as far as is decided. Zero motion for one that rests.
+// The current sweep of a body in this step. Zero motion if it rests.
 Sweep SweepOf(const StepContext& step, const BodyStore& bodies, const SweepStore& sweeps, uint32_t body);
 
-// The first hit of the sweep's rest that counts: of what it would overlap by more than a part of its thickness. What it
-// only slides along, or touches and leaves, is left to the solver. False: none.
+// The first hit of the rest of the sweep that counts: with an overlap of more than a fraction of its thickness. Sliding
+// and light touches are left to the solver. Returns false if there is none.
 bool CastSweep(const CollisionView& view, const SweepStore& sweeps, const Sweep& sweep, WorkerFindings& findings,
                SweepHit& hit);
-// The same against the other collider of a pair alone, for a body of one piece that is cast without its turn.
+// The same against only the other collider of a pair, for a body with one collider that is cast without rotation.
 bool CastPair(const CollisionView& view, const SweepStore& sweeps, uint32_t collider, uint32_t other,
               WorkerFindings& findings, SweepHit& hit);
 

@@ -1,5 +1,5 @@
-// How bodies moved within a step: for continuous collision, which cuts their sweeps short where they hit something, and
-// for sensors, which see what passed in between. Kept only while a body asks for it. Written by Store and Continuous.
+// The motion of bodies within a step: for continuous collision, which ends sweeps at hits, and for sensors. Kept only
+// if some body needs it. Written by Store and Continuous.
 #pragma once
 
 #include <Fulcrum/Constraints/MassOverride.h>
@@ -13,21 +13,21 @@
 
 namespace fulcrum {
 
-// In float, of which the places themselves are too far from zero for it.
+// The difference as float; the positions themselves need doubles.
 inline Vector3 Between(const Position& from, const Position& to) { return (to - from).cast<float>(); }
 
-// A body's path from some time of the step to its end: its center of mass moves straight, it turns at a constant rate.
-// Times are fractions of the step, 0 .. 1. All positions are on the grid, as those of the step are.
+// A body's path from some time of the step to its end: its center of mass moves along a line, and it rotates at a
+// constant rate. Times are fractions of the step, 0..1. All positions are on the grid, like those of bodies.
 struct Sweep {
     Pose start;                              // of the center frame, at `from`
     Vector3 displacement = Vector3::Zero();  // m, until the end
-    Vector3 turn = Vector3::Zero();          // rad, rotation vector, until the end
+    Vector3 turn = Vector3::Zero();          // rad, rotation vector, until the end of the step
     float from = 0;
     uint32_t body = 0;
-    bool turns = false;    // it is cast with its turn, however small
+    bool turns = false;    // casts include its rotation, however small
     bool isCut = false;    // something was hit
-    bool waits = false;    // stays until the step's end where it was at `from`, with the velocity of then
-    bool changed = false;  // in the present round
+    bool waits = false;    // stays at its pose at `from` until the end of the step, and keeps its velocity
+    bool changed = false;  // changed in the current round
 
     float PartAt(float time) const { return from < 1 ? (time - from) / (1 - from) : 0.0f; }
     Position PositionAt(float time) const {
@@ -38,33 +38,33 @@ struct Sweep {
         return Normalized(RotationFromVector(Vector3(turn * PartAt(time))) * start.rotation);
     }
     Pose PoseAt(float time) const { return {PositionAt(time), RotationAt(time)}; }
-    // Of a whole step's length.
+    // Scaled to a whole step.
     Vector3 DisplacementRate() const {
         return from < 1 ? Vector3(displacement * (1 / (1 - from))) : Vector3(Vector3::Zero());
     }
     Vector3 TurnRate() const { return from < 1 ? Vector3(turn * (1 / (1 - from))) : Vector3(Vector3::Zero()); }
 };
 
-// Where a swept body first meets another one that it would overlap.
+// The first hit of a swept body with another one.
 struct SweepHit {
     static constexpr int kMaxPoints = 4;
     float time = 1;
     uint32_t body = 0, other = 0;
     uint32_t collider = 0, otherCollider = 0;
-    uint32_t triangle = 0;  // of the other, where it is a surface: of the deepest point
+    uint32_t triangle = 0;  // if the other is a surface: triangle of the deepest point
     uint8_t material = 0;   // of the other's palette
     float friction = 0, restitution = 0;
-    Vector3 surfaceVelocity = Vector3::Zero();  // m/s, of the other's surface against its body
-    MassOverride massOverride;                  // the body as A, the other as B
-    // Neither has continuous collision: the body is cast because it was hit, and waits for the next step.
+    Vector3 surfaceVelocity = Vector3::Zero();  // m/s, of the other's surface relative to its body
+    MassOverride massOverride;                  // with with the body as A, the other as B
+    // Neither has continuous collision: the body was cast only because it was hit, and waits for the next step.
     bool isBlocked = false;
-    int pointCount = 0;                               // 0: the cast was not decided; nothing is touched before `time`
+    int pointCount = 0;                               // 0: undecided; there is no touch before `time`
     Vector3 normal = Vector3::Zero();                 // unit, from the body towards the other
-    Position center = Position::Zero();               // m, of the body's mass, where it touches
+    Position center = Position::Zero();               // m, of the body's mass at the hit
     Vector3 arms[kMaxPoints], otherArms[kMaxPoints];  // m, from the centers of mass to the points, world axes
 };
 
-// What contact events say of a hit.
+// Data of a hit for contact events.
 struct ReportedHit {
     uint32_t body = 0, other = 0;
     uint32_t collider = 0, otherCollider = 0;
@@ -73,34 +73,34 @@ struct ReportedHit {
 };
 
 struct SweepStore {
-    // Where the first round looks for what a fast body may hit.
+    // Where the first round searches the candidates of a fast body.
     enum class SearchBy : uint8_t {
         None,
-        Pairs,  // its path lies inside its fat bounds: there is a pair for all that it may hit
+        Pairs,  // its path is inside its fat bounds: all candidates have a pair
         Trees,
     };
     static constexpr uint32_t kNone = ~0u;
     struct Start {
         Pose pose;
-        uint64_t step = 0;  // the one that it is of
+        uint64_t step = 0;  // the step for which it is valid
     };
 
-    bool isKept = false;        // continuous collision or sensors ask for it in this step
+    bool isKept = false;        // continuous collision or sensors need it in this step
     float dt = 0;               // s, of the step
-    std::vector<Start> starts;  // by body: where it was when the step began
+    std::vector<Start> starts;  // by body: pose at the start of the step
     std::vector<SearchBy>
-        searchBy;  // by body; None for all but continuous ones that moved farther than they may without a cast
-    std::vector<Sweep> swept;            // sweeps that were searched anew, or changed
+        searchBy;  // by body; None except for bodies with continuous collision that moved too far without a cast
+    std::vector<Sweep> swept;            // sweeps that were cast or changed
     std::vector<uint32_t> places;        // by body: index into `swept`, or kNone
-    std::vector<Sweep> ended;            // sweeps that a hit has ended, in the order of the hits
+    std::vector<Sweep> ended;            // sweeps ended by a hit, in the order of the hits
     std::vector<float> endedAt;          // times
     std::vector<uint32_t> active, next;  // indices into `swept`, of this round and the next
-    std::vector<SweepHit> hits;          // of a round; afterwards those that wait for the next
-    std::vector<SweepHit> keptHits;      // room for those
-    bool reportsHits = false;            // contact events ask for it in this step
-    std::vector<ReportedHit> reported;   // those that stopped or deflected something in this step
+    std::vector<SweepHit> hits;          // of a round; afterwards those postponed to the next
+    std::vector<SweepHit> keptHits;      // temporary
+    bool reportsHits = false;            // whether contact events are on in this step
+    std::vector<ReportedHit> reported;   // hits that stopped or deflected a body in this step
 
-    // Whether the body's start is that of this step: it was awake as it began.
+    // Whether the body's start pose is that of this step: it was awake at its start.
     bool IsOfStep(uint32_t body, uint64_t step) const { return body < starts.size() && starts[body].step == step; }
 };
 

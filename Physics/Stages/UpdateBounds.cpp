@@ -1,5 +1,5 @@
-// A collider searches for pairs only when it leaves its fat bounds. These reach ahead along the velocity, so that a
-// body in flight leaves them once in several steps.
+// A collider searches for pairs only when it leaves its fat bounds. These are extended along the velocity, so that a
+// moving body leaves them only every few steps.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
@@ -12,13 +12,13 @@ namespace fulcrum {
 
 namespace {
 
-// Fat bounds reach so many steps along the velocity, but hardly farther than the body is large: every pair too many
-// costs more than a search.
+// Fat bounds are extended by the motion of this many steps, but not by much more than the body's size: a superfluous
+// pair costs more than a search.
 constexpr float kStepsAhead = 4;
 constexpr float kAheadFraction = 0.25f;  // of the outer radius
-// What moves by this part of the margin in a step would leave fat bounds so soon that they only cost pairs: it gets
-// tight ones.
-constexpr float kFastPart = 0.5f;
+// A body that moves by this fraction of the margin in a step would leave fat bounds so soon that they only cost pairs:
+// it gets tight ones.
+constexpr float kFastFraction = 0.5f;
 
 void UpdateColliders(const StepContext& step, uint32_t body, BodyStore& bodies, ColliderStore& colliders,
                      WorkerFindings& findings) {
@@ -45,7 +45,7 @@ void UpdateColliders(const StepContext& step, uint32_t body, BodyStore& bodies, 
         if (collider.fat.Contains(BoundsAlong(tight, motion, speculative))) return;
         const float radius = piece.shape->OuterRadius(), distance = Length(motion);
         const float margin = BoundsMargin(step.settings, *piece.shape);
-        if (distance > kFastPart * margin) {
+        if (distance > kFastFraction * margin) {
             collider.fat = BoundsAlong(tight, motion, speculative);
         } else {
             const float ahead = kAheadFraction * radius / std::max(distance, 1e-6f);
@@ -58,16 +58,16 @@ void UpdateColliders(const StepContext& step, uint32_t body, BodyStore& bodies, 
     if (changed) bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(step.number);
 }
 
-// The lists of what moves get room by the size of the world, so that no step of a settled one allocates, whichever
-// worker does what.
+// Reserves the lists of moved colliders by the size of the world, so that steps in steady state do not allocate,
+// whichever worker does the work.
 void ReserveLists(ColliderStore& colliders, std::span<WorkerFindings> workers) {
     const size_t most = colliders.colliders.capacity();
     colliders.moved.reserve(most);
     for (WorkerFindings& findings : workers) findings.colliders.reserve(most);
 }
 
-// In the order of their ids, so that the shape of the trees and the lists of sensors repeat from run to run; neither
-// depends on it where most moved and there are no sensors.
+// Sorted by id, so that trees and sensor lists are deterministic. Not needed if most colliders moved and there are no
+// sensors.
 void ListMoved(const SensorStore& sensors, ColliderStore& colliders, std::span<WorkerFindings> workers) {
     std::vector<uint32_t>& moved = colliders.moved;
     const auto first = static_cast<ptrdiff_t>(moved.size());
@@ -110,7 +110,8 @@ void UpdateBounds(const StepContext& step, const PairStore& pairs, const SensorS
             const BodyDynamics& dynamics = bodies.dynamics[body];
             if (dynamics.motion == MotionType::Dynamic) {
                 if (!dynamics.spherical) bodies.UpdateInertia(body);
-                Vector3 acceleration = gravity * (dynamics.dispersing ? 0.0f : dynamics.gravityFactor);
+                Vector3 acceleration = (dynamics.special ? bodies.GravityOf(body, gravity) : gravity) *
+                                       (dynamics.dispersing ? 0.0f : dynamics.gravityFactor);
                 if (dynamics.hasForce) acceleration += bodies.cold[body].force * dynamics.inverseMass;
                 if (dynamics.frozen) acceleration.setZero();
                 for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];

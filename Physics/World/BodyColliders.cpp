@@ -15,8 +15,8 @@ const CompoundShape* AsCompound(const Shape& shape) {
     return shape.IsCompound() ? static_cast<const CompoundShape*>(&shape) : nullptr;
 }
 
-// The collider of a child of a mutable compound; makes room for it. Further runs are as long as all before, so that
-// they are few.
+// The collider of a child of a mutable compound; allocates a further run if needed. Each further run is as long as all
+// before it, so that there are few.
 uint32_t ColliderOf(WorldState& world, uint32_t body, uint32_t child) {
     constexpr uint32_t kLeast = 8;
     ColliderStore& store = world.colliders;
@@ -45,7 +45,7 @@ void Insert(WorldState& world, uint32_t body, uint32_t index) {
     world.colliders.TreeOf(collider).Insert(index, collider.fat);
 }
 
-// A sensor holds nothing up.
+// A sensor supports no bodies.
 void WakeNear(WorldState& world, uint32_t index) {
     if (!world.colliders.colliders[index].sensor) WakeInside(world, world.colliders.colliders[index].fat);
 }
@@ -59,7 +59,8 @@ void RemovePairsOf(WorldState& world, uint32_t collider) {
     world.pairs.VisitOf(collider, [&](uint32_t pair) { RemovePair(world.pairs, world.coloring, pair); });
 }
 
-// Has what touches the collider looked at anew, however little it moved; impulses go on.
+// Invalidates the manifolds of the collider's pairs, so that they are recomputed however little bodies moved; impulses
+// are kept.
 void ForgetManifoldsOf(WorldState& world, uint32_t collider) {
     world.pairs.VisitOf(collider, [&](uint32_t pair) {
         world.pairs.pairs[pair].reference.position = Vector3::Constant(std::numeric_limits<float>::infinity());
@@ -159,6 +160,23 @@ void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {
     world.colliders.colliders[index].previous = {};
     world.colliders.Queue(index);
     WakeNear(world, index);
+}
+
+void MoveToItsTree(WorldState& world, uint32_t body) {
+    ColliderStore& store = world.colliders;
+    const BodyCold& cold = world.bodies.cold[body];
+    const BodyDynamics& d = world.bodies.dynamics[body];
+    if (!cold.isSensor) (d.motion != MotionType::Static ? store.movingLayers : store.staticLayers) |= 1u << d.layer;
+    VisitColliders(world, body, [&](uint32_t i) {
+        Collider& collider = store.colliders[i];
+        store.TreeOf(collider).Remove(i);
+        collider.moving = d.motion != MotionType::Static;
+        collider.sensor = cold.isSensor;
+        SetFatBounds(world.settings, world.bodies, world.colliders, i);
+        store.TreeOf(collider).Insert(i, collider.fat);
+        world.outsideFatBounds.Forget(i);
+    });
+    RequeueColliders(world.bodies, world.colliders, body);
 }
 
 double RelativeMassOf(const Shape& shape) {

@@ -1,4 +1,4 @@
-// The pairs of whole bodies. Called by BodyInterface between steps, and as a step begins; one thread.
+// Visits the pairs of whole bodies. Called by BodyInterface between steps, and at the start of a step; one thread.
 #pragma once
 
 #include <Fulcrum/Physics/World/WorldState.h>
@@ -9,8 +9,8 @@
 
 namespace fulcrum {
 
-// Calls visit(pair) for each pair of these bodies' colliders, further manifolds left out, in ascending order whatever
-// the order in which the colliders' lists have them. The visitor may remove the pair it is called with.
+// Calls visit(pair) for each pair of these bodies' colliders, except additional manifolds, in ascending order,
+// independent of the order of the colliders' lists. The visitor may remove the pair it is called with.
 template <class Visitor>
 void VisitPairsOf(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
                   std::span<const uint32_t> of, Visitor&& visit) {
@@ -20,7 +20,8 @@ void VisitPairsOf(const BodyStore& bodies, const ColliderStore& colliders, const
             pairs.VisitOf(collider, [&](uint32_t pair) { found.push_back(pair); });
         });
     std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());  // a pair of two of the bodies is in two lists
+    found.erase(std::unique(found.begin(), found.end()),
+                found.end());  // pairs between two of the bodies are in two lists
     for (uint32_t pair : found) visit(pair);
 }
 

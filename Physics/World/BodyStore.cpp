@@ -21,7 +21,7 @@ uint32_t BodyStore::Allocate() {
         dynamics.emplace_back();
         cold.emplace_back();
         remainders.emplace_back();
-        reportsContacts.Reserve(index + 1);
+        for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves}) set->Reserve(index + 1);
     }
     cold[index].exists = true;
     if (notesSleepChanges) sleepChanges.push_back(index);
@@ -37,7 +37,7 @@ void BodyStore::Free(uint32_t index) {
     dynamics[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
-    reportsContacts.Erase(index);
+    for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves}) set->Erase(index);
     free_.push_back(index);
     --count_;
 }
@@ -63,7 +63,7 @@ void BodyStore::ForgetPlaced() {
         cold[body].placed &= dynamics[body].motion == MotionType::Dynamic && !dynamics[body].awake;
     }
     placed.clear();
-    constexpr size_t kMostKept = 64;  // places: levels are created once
+    constexpr size_t kMostKept = 64;  // capacity: levels are created once
     if (placed.capacity() > kMostKept) placed = {};
 }
 
@@ -105,7 +105,7 @@ void BodyStore::MoveCenter(uint32_t index, const Vector3& displacement, const Qu
 
 namespace {
 
-// World inverse inertia of a body that cannot turn about some world axes: the inverse of the block of the others.
+// World inverse inertia of a body with locked rotation axes: the inverse of the block of the free axes.
 SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
     Vector3 principal;
     for (int k = 0; k < 3; ++k) principal[k] = d.inverseInertia[k] > 0 ? 1.0f / d.inverseInertia[k] : 0.0f;
@@ -115,7 +115,7 @@ SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
     SymmetricMatrix3 i;
     const auto pair = [](float a, float b, float c, float& ia, float& ib, float& ic) {
         const float determinant = a * b - c * c;
-        // Products of extreme moments leave the floats where their inverses do not.
+        // Products of extreme moments may overflow a float although their inverses fit.
         const double exact = std::isnormal(determinant) ? double{determinant} : double{a} * b - double{c} * c;
         ia = static_cast<float>(b / exact);
         ib = static_cast<float>(a / exact);
@@ -166,7 +166,7 @@ Vector3 AngularMomentum(const BodyDynamics& d, const Quaternion& rotation, const
     const Quaternion axes = rotation * d.PrincipalAxes();
     Vector3 local = InverseRotate(axes, w);
     for (int k = 0; k < 3; ++k) local[k] = d.inverseInertia[k] > 0 ? local[k] / d.inverseInertia[k] : 0.0f;
-    constexpr float kMost = 1e38f;  // their sum is a float, too
+    constexpr float kMost = 1e38f;  // so that their sum does not overflow
     return Rotate(axes, Vector3(local.cwiseMax(-kMost).cwiseMin(kMost)));
 }
 
@@ -175,14 +175,17 @@ double RotationalEnergy(const BodyDynamics& d, const Quaternion& rotation, const
 }
 
 size_t HeapBytes(const BodyCold& body) {
-    return (body.filter ? sizeof(BodyFilter) : 0) + (body.children ? sizeof(BodyChildren) : 0);
+    return (body.filter ? sizeof(BodyFilter) : 0) + (body.children ? sizeof(BodyChildren) : 0) +
+           (body.keptMass ? sizeof(KeptMass) : 0);
 }
 
 size_t HeapBytes(const BodyStore& store) {
-    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-                 reportsContacts, sleepChanges, notesSleepChanges, free, count] = store;
-    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, continuousCount,
-                     reportsContacts, sleepChanges, notesSleepChanges, free, count);
+    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
+                 continuousCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] =
+        store;
+    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
+                     continuousCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free,
+                     count);
 }
 
 }  // namespace fulcrum

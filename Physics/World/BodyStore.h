@@ -1,4 +1,4 @@
-// All bodies, as arrays by index: what each stage touches lies together. Indices of removed bodies are reused with
+// All bodies, as arrays by index: data used by the same stages are adjacent. Indices of removed bodies are reused with
 // another generation. Written by BodyInterface between steps and by the stages during one.
 #pragma once
 
@@ -32,7 +32,7 @@ struct alignas(64) BodyDynamics {
     bool hasForce : 1 = false;  // BodyCold::force or torque is not zero
     bool frozen : 1 = false;
     bool continuous : 1 = false;  // BodyCold::continuous is not Off
-    bool filtered : 1 = false;    // it has a BodyFilter: ask FiltersAllow
+    bool special : 1 = false;     // it has a BodyFilter, ask FiltersAllow; or gravity of its own, ask GravityOf
     uint8_t layer : 5 = 0;
     uint8_t crowded : 2 = 0;      // level, see CrowdContacts.h; 0: it is not
     bool dispersing : 1 = false;  // see Crowd.h
@@ -54,7 +54,7 @@ struct alignas(64) BodyDynamics {
         kNoFloat = 7
     };
 
-    // Sets what the locked axes forbid of a velocity or a displacement to zero.
+    // Sets the components of a velocity or displacement along locked axes to zero.
     void Lock(Vector3& linear, Vector3& angular) const {
         const unsigned locked = static_cast<unsigned>(lockedAxes);
         for (unsigned k = 0; k < 3; ++k) {
@@ -62,8 +62,8 @@ struct alignas(64) BodyDynamics {
             if (locked >> (3 + k) & 1) angular[k] = 0;
         }
     }
-    // Whether gyroscopic torque changes anything that can be seen, at the angular velocity in rad/s.
-    bool FeelsGyroscopicTorque(const Vector3& w) const {
+    // Whether gyroscopic torque is significant at the angular velocity in rad/s.
+    bool HasGyroscopicTorqueAt(const Vector3& w) const {
         return HasGyroscopicTorque() && LengthSquared(w) > kLeastGyroscopicSpeed * kLeastGyroscopicSpeed;
     }
     static constexpr float kLeastGyroscopicSpeed = 0.1f;  // rad/s
@@ -87,9 +87,10 @@ FULCRUM_CHECK_PLACE(BodyDynamics, motion, 1, BodyDynamics::kNoFloat);
 
 // kg m2/s about the center of mass, world axes, at the rotation and angular velocity (rad/s).
 Vector3 AngularMomentum(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
-// J, in double: of extreme bodies it is beyond the floats.
+// J, in double: for extreme bodies it overflows a float.
 double RotationalEnergy(const BodyDynamics& body, const Quaternion& rotation, const Vector3& angularVelocity);
-// Twice the energy, J, of a body that turns at this angular velocity (rad/s, along the principal axes), summed in Real.
+// Twice the kinetic energy, J, of a body that rotates at this angular velocity (rad/s, along the principal axes),
+// summed in Real.
 template <class Real>
 Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
     Real sum = 0;
@@ -97,8 +98,8 @@ Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
         sum += body.inverseInertia[k] > 0 ? Real{w[k]} * Real{w[k]} / Real{body.inverseInertia[k]} : Real{0};
     return sum;
 }
-// The inverses of mass, kg, and principal moments of inertia, kg m2, along axes that are rotated so in the center
-// frame.
+// Sets the inverses of mass, kg, and principal moments of inertia, kg m2; principalAxes: rotation of the principal
+// frame in the center frame.
 void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
 // The principal axes in world space.
 inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) {
@@ -106,19 +107,39 @@ inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) {
 }
 class MutableCompound;
 
-// What only bodies have whose children may be edited.
+// Data of bodies with editable children.
 struct BodyChildren {
     MutableCompound* compound = nullptr;  // the body's own: BodyCold::shape
-    Vector3 origin = Vector3::Zero();     // of the children's frame in the center frame, m
-    double massUnit = 0;                  // kg, of the compound's RelativeMass
+    Vector3 origin = Vector3::Zero();     // origin of the children's frame in the center frame, m
+    double massUnit = 0;                  // kg, mass per unit of the compound's RelativeMass
     uint32_t moreColliders = ~0u;         // index into ColliderStore::runs
 };
 
-// What a body collides with, where that is not everything.
+// Collision filter of a body, if not the default.
 struct BodyFilter {
     uint64_t category = 1, mask = ~uint64_t(0);
     CollisionGroup group;
     bool IsDefault() const { return category == 1 && mask == ~uint64_t(0) && !group.filter; }
+};
+
+// The mass that a body gets when it becomes dynamic.
+struct KeptMass {
+    float mass = 0;                     // kg
+    Vector3 inertia = Vector3::Zero();  // kg m2, principal
+    Quaternion principalAxes;           // from the principal frame to the center frame
+};
+
+// Force, N, and torque, N m, applied by the user in a step.
+struct BodyPush {
+    Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
+    bool IsZero() const { return force.isZero(0) && torque.isZero(0); }
+};
+
+// State of a kinematic body that moves for one step only.
+enum class SingleMove : uint8_t {
+    None,
+    Next,  // in the next step
+    Last,  // in the last one: it stops unless MoveKinematic is called again
 };
 
 // Cold: for the interface.
@@ -129,15 +150,22 @@ struct BodyCold {
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
     std::unique_ptr<BodyFilter> filter;                         // null: the default
     uint32_t firstCollider = 0, colliderCount = 0;
-    std::unique_ptr<BodyChildren> children;  // where `shape` is a mutable compound
+    std::unique_ptr<BodyChildren> children;  // if `shape` is a mutable compound
     uint32_t generation = 0;
     uint32_t awakePlace = 0;        // index into BodyStore::awake
     uint32_t sleepingIsland = ~0u;  // index into SleepingIslands
     ContinuousCollision continuous = ContinuousCollision::Off;
+    SingleMove singleMove = SingleMove::None;
+    std::unique_ptr<KeptMass> keptMass;  // null: that of a density of 1000 kg/m3
+    BodyPush lastPush;                   // of the last step in which it was awake; see World/SteadyPushes.h
+    Vector3 gravity = Vector3::Zero();   // m/s2, where hasGravity
     bool exists : 1 = false;
     bool placed : 1 = false;   // see BodyStore::MarkPlaced
-    bool removed : 1 = false;  // by the interface, its index not yet free
+    bool removed : 1 = false;  // removed by the interface, its index not yet free
     bool isSensor : 1 = false;
+    bool isSteady : 1 = false;    // lastPush was the same in the step before
+    bool isWorld : 1 = false;     // it is BodyStore::worldBody
+    bool hasGravity : 1 = false;  // of its own, in place of the system's
 
     uint32_t MoreColliders() const {
         return children ? children->moreColliders : ~0u;
@@ -146,16 +174,16 @@ struct BodyCold {
 
 size_t HeapBytes(const BodyCold& body);
 
-// Velocity without the constraints' share, from which the next substep's warm start follows.
+// Unconstrained velocity, from which the next substep's warm start is computed.
 struct alignas(32) UnconstrainedVelocity {
-    float row[kRowFloats];  // the first of BodyState
+    float row[kRowFloats];  // same layout as the first row of BodyState
 };
 
-// The step reads positions as multiples of this and carries the remainder: positions relative to each other are then
-// the same to the last bit however far out the bodies are, up to 2^30 m, where the spacing of doubles exceeds it.
+// The step reads positions rounded to multiples of this and keeps the remainder: relative positions are then
+// bit-identical wherever the bodies are, up to 2^30 m, where the spacing of doubles exceeds it.
 inline constexpr double kPositionGrid = 0x1p-23;  // m, 0.12 micrometers
 
-// The nearest point of the grid. Beyond 2^29 m doubles lie on it anyway.
+// The nearest point of the grid. Beyond 2^29 m all doubles are on the grid.
 inline Position OnGrid(const Position& position) {
     Position rounded;
     for (int k = 0; k < 3; ++k)
@@ -168,11 +196,12 @@ inline Position OnGrid(const Position& position) {
 // The exact position minus the one on the grid.
 struct Remainder {
     Position value = Position::Zero();  // m
-    bool isGiven = true;                // by the user, far out more coarsely than near: forgotten when the body moves
+    bool isGiven = true;  // set by the user, whose positions are coarser far out: dropped when the body moves
 };
 
 class BodyStore {
 public:
+    static constexpr uint32_t kNone = ~0u;
     // By index; all of the same size.
     std::vector<BodyState> states;
     std::vector<BodyMass> masses;
@@ -184,18 +213,20 @@ public:
 
     std::vector<uint32_t> placed;  // see MarkPlaced, in no order
     std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
+    uint32_t worldBody = kNone;    // the static one that stands for the world in joints, see JointInterface.cpp
     uint32_t continuousCount = 0;  // bodies with continuous collision
     IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
-    // For events, where they are on: bodies that came to be, woke or fell asleep since the last step; repeated, in no
-    // order.
+    IndexSet pushed;               // bodies that have a force or torque, or had one in the last step
+    IndexSet singleMoves;          // bodies with a SingleMove
+    // For events, if enabled: bodies created, woken or fallen asleep since the last step; with duplicates, unordered.
     std::vector<uint32_t> sleepChanges;
     bool notesSleepChanges = false;
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
     uint32_t Count() const { return count_; }                             // of the bodies
-    uint32_t Allocate();                                                  // an index with fresh values; exists is set
+    uint32_t Allocate();                                                  // an index with default values; exists is set
     void Free(uint32_t index);                                            // after Remove: the index may be reused
-    // Whether the id names a body; then Index is its index.
+    // Whether the id is that of an existing body; then id.index is its index.
     bool Find(BodyId id) const {
         return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
     }
@@ -205,22 +236,24 @@ public:
         return cold[index].filter ? *cold[index].filter : kDefault;
     }
     void SetFilter(uint32_t index, const BodyFilter& filter) {
-        dynamics[index].filtered = !filter.IsDefault();
         cold[index].filter = filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
+        UpdateSpecial(index);
     }
+
+    void UpdateSpecial(uint32_t index) { dynamics[index].special = cold[index].filter || cold[index].hasGravity; }
 
     // Whether constraints move it.
     bool CanMove(uint32_t index) const {
         return dynamics[index].motion == MotionType::Dynamic && !dynamics[index].frozen;
     }
     void MarkAwake(uint32_t index);
-    // Of a body that was created, or has got another pose, shape or filter: its overlaps in the next step, or in that
-    // in which it wakes, count as placed by the user (Stages/CrowdContacts.h).
+    // Called for a body that was created, or got another pose, shape or filter: its overlaps in the next step, or in
+    // the one in which it wakes, count as placed by the user (Stages/CrowdContacts.h).
     void MarkPlaced(uint32_t index);
     void ForgetPlaced();
     void MarkAsleep(uint32_t index);
 
-    // From its shape.
+    // Sets them from its shape.
     void SetRadii(uint32_t index, const Shape& shape) {
         dynamics[index].outerRadius = shape.OuterRadius();
         const float inner = shape.InnerRadius();
@@ -240,7 +273,7 @@ public:
     Pose ExactCenterPoseOf(uint32_t index) const { return {ExactCenterOf(index), RotationOf(index)}; }
     Position ExactCenterOf(uint32_t index) const { return CenterOf(index) + remainders[index].value; }
     void SetCenterPose(uint32_t index, const Pose& pose);
-    // Moves the center by so many m.
+    // Moves the center by a displacement, m, and sets the rotation.
     void MoveCenter(uint32_t index, const Vector3& displacement, const Quaternion& rotation);
     Vector3 LinearVelocityOf(uint32_t index) const {
         const float* v = states[index].linearVelocity;
@@ -257,14 +290,18 @@ public:
             s.angularVelocity[k] = angular[k];
         }
     }
+    // m/s2, without the body's factor; `gravity`: the system's.
+    Vector3 GravityOf(uint32_t index, const Vector3& gravity) const {
+        return dynamics[index].special && cold[index].hasGravity ? cold[index].gravity : gravity;
+    }
     void ForgetForces(uint32_t index) {
         if (!dynamics[index].hasForce) return;
         cold[index].force = cold[index].torque = Vector3::Zero();
         dynamics[index].hasForce = false;
     }
-    // Brings the world inverse inertia of `masses` in line with the rotation.
+    // Updates the world inverse inertia of `masses` from the rotation.
     void UpdateInertia(uint32_t index) { masses[index] = MassAlong(index, AxesOf(dynamics[index], RotationOf(index))); }
-    // Of a body whose principal axes in the world are these.
+    // Mass and world inertia for the given principal axes in world space.
     BodyMass MassAlong(uint32_t index, const Matrix3& axes) const;
     SolverBodies ForSolver() { return {states.data(), masses.data(), poses.data()}; }
     ConstSolverBodies ForSolver() const { return {states.data(), masses.data(), poses.data()}; }

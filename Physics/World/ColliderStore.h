@@ -1,6 +1,6 @@
-// Colliders: the pieces of the bodies, as the broad phase sees them. A compound has one per child, in a run of
-// consecutive ones, every other shape one. A mutable compound that outgrows its run gets further ones; a removed child
-// leaves its collider empty, without a shape. There are trees of static colliders, of those that may move, and of
+// Colliders: the proxies of bodies in the broad phase. A compound has one per child, in a run of consecutive indices,
+// every other shape one. A mutable compound that outgrows its run gets further runs; a removed child leaves its
+// collider empty, without a shape. There are separate trees for static colliders, for those that may move, and for
 // sensors.
 #pragma once
 
@@ -11,25 +11,25 @@
 
 namespace fulcrum {
 
-// What the search for pairs reads: one line.
+// Data for the search of pairs: one cache line.
 struct alignas(64) Collider {
-    Bounds fat;  // m, about ColliderStore::boundsOrigin: the piece stays inside until it is moved out
-    // As of the last search. Two colliders whose previous bounds overlap have their pair already. Empty: search for
-    // all.
+    Bounds fat;  // m, relative to ColliderStore::boundsOrigin: fat bounds, updated when the collider leaves them
+    // Fat bounds at the last search. Two colliders whose previous bounds overlap already have their pair. Empty: search
+    // for all.
     Bounds previous;
     uint32_t body = 0;
     bool moving = false;  // which tree
     bool queued = false;  // in ColliderStore::moved
-    bool sensor = false;  // in a tree of its own, so that only Sense, and queries that ask for sensors, find it
+    bool sensor = false;  // in a separate tree, so that only Sense, and queries for sensors, find it
 };
 static_assert(sizeof(Collider) == 64);
 
-// The piece itself.
+// The shape of a collider.
 struct ColliderShape {
-    const Shape* shape = nullptr;  // no compound; kept alive by the body's shape; null: empty
+    const Shape* shape = nullptr;  // not a compound; kept alive by the body's shape; null: empty
     bool offset = false;           // not at the body's center frame
-    bool onOrigin = false;         // `local` is seen from BodyChildren::origin
-    RelativePose local;            // of the shape's center frame in the body's: read it by LocalOf (WorldState.h)
+    bool onOrigin = false;         // `local` is relative to BodyChildren::origin
+    RelativePose local;            // pose of the shape's center frame in the body's: read it by LocalOf (WorldState.h)
 };
 
 // Consecutive colliders of a body.
@@ -43,14 +43,14 @@ public:
     static constexpr uint32_t kNone = ~0u;
     std::vector<Collider> colliders;
     std::vector<ColliderShape> shapes;  // same index
-    // m, world: where all bounds are measured from. They are float, fine near it and coarse far from it, so it is near
-    // the first body of an empty world, in steps of a kilometer.
+    // m, world: the origin of all bounds. They are floats, precise near it, so it is placed near the first body of an
+    // empty world, in steps of a kilometer.
     Position boundsOrigin = Position::Zero();
     BoundsTree staticTree, movingTree, sensorTree;
     uint32_t movingLayers = 0, staticLayers = 0;  // bit i: a body of layer i is, or was, in the tree
-    std::vector<uint32_t> moved;                  // whose pairs must be searched
-    bool movedHasEmpty = false;                   // some of them have been removed since
-    std::vector<ColliderRun> runs;                // bodies' further ones
+    std::vector<uint32_t> moved;                  // colliders whose pairs must be searched
+    bool movedHasEmpty = false;                   // some of them have been removed
+    std::vector<ColliderRun> runs;                // further runs of bodies
 
     BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : staticTree; }
     uint32_t Allocate(uint32_t count);  // index of the first of `count` consecutive ones
@@ -62,13 +62,13 @@ public:
         colliders[collider].queued = true;
         moved.push_back(collider);
     }
-    // Whether so many moved that it costs less to look at the whole moving tree than at each of them.
+    // Whether so many moved that processing the whole moving tree is cheaper than each of them.
     bool MostMoved() const { return 2 * moved.size() >= movingTree.Size(); }
     friend size_t HeapBytes(const ColliderStore& store);
 
 private:
     friend struct SnapshotAccess;
-    std::vector<std::vector<uint32_t>> free_;  // by count: first indices of runs that were given back
+    std::vector<std::vector<uint32_t>> free_;  // by count: first indices of freed runs
     std::vector<uint32_t> freeRuns_;
 };
 

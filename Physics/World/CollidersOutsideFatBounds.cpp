@@ -13,7 +13,7 @@ void CollidersOutsideFatBounds::Refresh(const BodyStore& bodies, const ColliderS
     const std::lock_guard<std::mutex> guard(refreshing_);
     if (isFresh_.load(std::memory_order_relaxed)) return;
     tree_.Clear();
-    // Those that fell asleep were refitted then.
+    // Sleeping bodies were refitted when they fell asleep.
     for (const uint32_t body : bodies.awake) {
         VisitColliders(bodies, colliders, body, [&](uint32_t i) {
             const Bounds bounds = TightBoundsOf(bodies, colliders, i);

@@ -1,6 +1,6 @@
-// Colliders that the last step moved out of their fat bounds, which the trees learn only at the beginning of the next:
-// the queries find them here. Made by the first query after a step, so that worlds without queries pay nothing; an
-// index alone, which influences no step. Refresh may be called by many readers at once, all else by the one writer.
+// Colliders that the last step moved out of their fat bounds. The trees are only updated at the start of the next step,
+// so queries test these in addition. Computed by the first query after a step, so that worlds without queries pay
+// nothing; does not influence steps. Refresh may be called by many readers at once, everything else by the one writer.
 #pragma once
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
@@ -17,7 +17,7 @@ class ColliderStore;
 class CollidersOutsideFatBounds {
 public:
     void MarkStale() { isFresh_.store(false, std::memory_order_relaxed); }  // after a step
-    void Forget(uint32_t collider);                                         // it was removed, or its bounds set anew
+    void Forget(uint32_t collider);  // it was removed, or its bounds were updated
     void Refresh(const BodyStore& bodies, const ColliderStore& colliders);  // before a query
 
     bool IsEmpty() const { return tree_.Size() == 0; }

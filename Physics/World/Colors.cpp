@@ -7,7 +7,7 @@ using Coloring = ConstraintColoring;
 void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
     Pair& pair = pairs.pairs[index];
     if (pair.color.color != 0xFF) return;
-    // Contacts with immovable bodies come last: they must win.
+    // Contacts with immovable bodies are solved last, so they win.
     pair.color = coloring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
 }
 
@@ -30,7 +30,7 @@ void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) 
 
 bool MovesAwake(const BodyStore& bodies, const JointStore& joints, uint32_t index) {
     const Joint& joint = joints.joints[index];
-    const auto isAwake = [&](int side) { return !joint.still[side] && bodies.dynamics[joint.body[side]].awake; };
+    const auto isAwake = [&](int side) { return !joint.fixed[side] && bodies.dynamics[joint.body[side]].awake; };
     return isAwake(0) || isAwake(1);
 }
 
@@ -38,7 +38,7 @@ void ColorJoint(const BodyStore& bodies, JointStore& joints, ConstraintColoring&
     Joint& joint = joints.joints[index];
     if (joint.color.color != 0xFF || !joint.enabled || !MovesAwake(bodies, joints, index)) return;
     coloring.ReserveBodies(bodies.Size());
-    const bool late = joint.priority == JointPriority::High || joint.still[0] || joint.still[1];
+    const bool late = joint.priority == JointPriority::High || joint.fixed[0] || joint.fixed[1];
     joint.color = coloring.Add(Coloring::Kind::Joint, EntryOf(joint, index), late);
 }
 
@@ -53,10 +53,10 @@ void UncolorJoint(JointStore& joints, ConstraintColoring& coloring, uint32_t ind
 void RecolorJointsOf(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t body) {
     joints.VisitOf(body, [&](uint32_t index) {
         Joint& joint = joints.joints[index];
-        bool& still = joint.still[joint.SideOf(body)];
-        if (still == !bodies.CanMove(body)) return;
+        bool& fixed = joint.fixed[joint.SideOf(body)];
+        if (fixed == !bodies.CanMove(body)) return;
         UncolorJoint(joints, coloring, index);
-        still = !still;
+        fixed = !fixed;
         ColorJoint(bodies, joints, coloring, index);
     });
 }

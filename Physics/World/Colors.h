@@ -1,5 +1,5 @@
-// Constraints get a color when they come to act and lose it when they no longer do: contacts as they begin and end,
-// joints as they come and go, wake and sleep. One thread.
+// Constraints get a color when they become active and lose it when they become inactive: contacts when they begin and
+// end, joints when they are created, removed, wake or fall asleep. One thread.
 #pragma once
 
 #include <Fulcrum/Physics/World/BodyStore.h>
@@ -8,29 +8,29 @@
 
 namespace fulcrum {
 
-// A pair, or a joint, as the coloring sees it.
+// Arguments of the coloring for a pair or a joint.
 inline ConstraintColoring::Kind KindOf(const Pair& pair) {
     return pair.fixedB ? ConstraintColoring::Kind::Fixed : ConstraintColoring::Kind::Moving;
 }
 inline ConstraintColoring::Entry EntryOf(const Joint& joint, uint32_t index) {
-    return {index, joint.body[0], joint.body[1], joint.still[0], joint.still[1]};
+    return {index, joint.body[0], joint.body[1], joint.fixed[0], joint.fixed[1]};
 }
 inline ConstraintColoring::Entry EntryOf(const Pair& pair, uint32_t index) {
     return {index, pair.bodyA, pair.bodyB, false, pair.fixedB};
 }
 
-// Gives a pair's contact a color, or takes it away; nothing where it has one, or none.
+// Assigns a color to a pair's contact, or removes it; no effect if it already has one, or none.
 void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
 void UncolorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
-// Uncolors and removes a pair with all its manifolds.
+// Removes a pair with all its manifolds and their colors.
 void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t pair);
 
-// Whether a joint has a body that is awake and can move.
+// Whether a joint has an awake body that can move.
 bool MovesAwake(const BodyStore& bodies, const JointStore& joints, uint32_t joint);
-// As for pairs; only a joint that is enabled and moves awake gets a color.
+// As for pairs; only enabled joints with MovesAwake get a color.
 void ColorJoint(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t joint);
 void UncolorJoint(JointStore& joints, ConstraintColoring& coloring, uint32_t joint);
-// Updates a body's joints after it became immovable (frozen) or movable again (revived).
+// Updates a body's joints after it became immovable (frozen) or movable again.
 void RecolorJointsOf(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t body);
 
 }  // namespace fulcrum

@@ -4,9 +4,9 @@ namespace fulcrum {
 
 namespace {
 
-// Makes bounds about the center of a shape larger by how far a turn, a rotation vector in rad, takes what is inside of
-// them: |turn x p| along each axis, of points p up to as far out as the bounds reach by then; never beyond the outer
-// sphere. What turns so slowly that its ends do not leave where they were passes through nothing, and keeps its bounds.
+// Extends bounds about the center of a shape by the motion of points inside due to a rotation vector, rad: |turn x p|
+// along each axis for points p within the extended bounds; never beyond the bounding sphere. For rotations too slow to
+// matter the bounds are unchanged.
 void ExtendByTurn(const Shape& shape, const Vector3& turn, Vector3& lower, Vector3& upper) {
     const float outer = shape.OuterRadius(), angle = Length(turn);
     if (!(angle * outer > shape.InnerRadius())) return;

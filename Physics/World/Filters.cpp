@@ -72,12 +72,13 @@ void ChangeListener(WorldState& world, const ContactListener* listener) {
     world.listener = listener;
     RemoveAllForbiddenPairs(world);
     world.pairs.KeepMassOverrides(listener != nullptr);
-    // What the last one said of contacts, and of bodies that therefore have no pair.
+    // Resets the previous listener's changes of contacts, and searches for pairs that it had forbidden.
     for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
         if (!world.pairs.pairs[i].exists) continue;
         CombineMaterials(world.bodies, world.pairs, i);
         world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
-        world.pairs.records[i].Set(ContactRecord::kMassOverride, false);
+        for (const auto mark : {ContactRecord::kMassOverride, ContactRecord::kSensed})
+            world.pairs.records[i].Set(mark, false);
     }
     for (uint32_t body : world.bodies.awake) RequeueColliders(world.bodies, world.colliders, body);
 }

@@ -1,5 +1,5 @@
-// The memory behind buffers. A store names its members once, all of them, in a structured binding: it does not compile
-// where one is left out, so that no new buffer goes uncounted.
+// Heap memory of buffers. A store lists all its members in a structured binding: a new member does not compile until it
+// is counted.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
@@ -10,11 +10,11 @@
 
 namespace fulcrum {
 
-// What owns no memory.
+// Types that own no memory.
 template <class T>
 requires std::is_trivially_copyable_v<T> size_t HeapBytes(const T&) { return 0; }
 
-// What counts for itself.
+// Types with a HeapBytes function of their own.
 template <class T>
 requires requires(const T& t) { t.MemoryUsed(); }
 size_t HeapBytes(const T& counted) { return counted.MemoryUsed(); }

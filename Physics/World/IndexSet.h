@@ -1,4 +1,4 @@
-// A set of small integers as bits, visited in ascending order: the order of memory, and the same however they came in.
+// A set of small integers as bits, visited in ascending order, independent of the order of insertion.
 #pragma once
 
 #include <bit>
@@ -10,12 +10,12 @@ namespace fulcrum {
 
 class IndexSet {
 public:
-    // Makes room for 0 .. count - 1.
+    // Reserves 0..count - 1.
     void Reserve(uint32_t count) {
         if (words_.size() * 64 < count) words_.resize((count + 63) / 64, 0);
     }
     bool Contains(uint32_t i) const { return i / 64 < words_.size() && (words_[i / 64] >> i % 64 & 1) != 0; }
-    // i is below the reserved count. Returns whether that changed the set.
+    // i must be below the reserved count. Returns whether the set changed.
     bool Insert(uint32_t i) {
         const bool is = Contains(i);
         words_[i / 64] |= uint64_t(1) << i % 64;
@@ -33,7 +33,7 @@ public:
     uint64_t Word(uint32_t word) const { return words_[word]; }
     size_t MemoryUsed() const { return words_.capacity() * sizeof(uint64_t); }
 
-    // Visits the members among 64 word .. 64 word + 63 as they were when it began: the visitor may erase.
+    // Visits the members among 64 word..64 word + 63 as of the start of the call: the visitor may erase.
     template <class Visitor>
     void VisitWord(uint32_t word, Visitor&& visit) const {
         for (uint64_t bits = words_[word]; bits != 0; bits &= bits - 1)

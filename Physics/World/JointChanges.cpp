@@ -7,7 +7,7 @@ namespace fulcrum {
 
 namespace {
 
-// The two bodies must not touch any longer.
+// The two bodies must no longer collide.
 void DropPairs(WorldState& world, const Joint& joint) {
     VisitColliders(world, joint.body[0], [&](uint32_t i) {
         VisitColliders(world, joint.body[1], [&](uint32_t j) {

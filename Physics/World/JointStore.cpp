@@ -79,7 +79,7 @@ bool JointStore::ForbidsContact(uint32_t bodyA, uint32_t bodyB) const {
     return forbids;
 }
 
-// Types have what members they like: at least this.
+// A lower bound: derived types may be larger.
 size_t HeapBytes(const Joint& joint) { return joint.type ? sizeof(JointType) : 0; }
 
 size_t HeapBytes(const JointStore& store) {

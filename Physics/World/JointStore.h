@@ -1,6 +1,6 @@
-// All joints, by index: what the solver gathers lies together, the rest apart. Indices of removed joints are reused
-// with another generation. Written by JointInterface between steps and by the stages during one. Each body knows its
-// joints.
+// All joints, as arrays by index: data gathered by the solver are separate from the rest. Indices of removed joints are
+// reused with another generation. Written by JointInterface between steps and by the stages during one. Each body has a
+// list of its joints.
 #pragma once
 
 #include <Fulcrum/Constraints/Coloring.h>
@@ -16,17 +16,17 @@
 
 namespace fulcrum {
 
-// Numbers of substeps and passes with which an island is to be solved at least; 0: the system's do.
+// Minimum substeps and iterations of an island; 0: the system's are sufficient.
 struct LeastEffort {
     uint8_t substeps = 0, velocityIterations = 0, positionIterations = 0;
 
     bool IsAny() const { return substeps > 0 || velocityIterations > 0 || positionIterations > 0; }
-    // Whether it is more than the settings have.
+    // Whether any number exceeds the settings'.
     bool Exceeds(const SolverSettings& settings) const {
         return substeps > settings.substeps || velocityIterations > settings.velocityIterations ||
                positionIterations > settings.positionIterations;
     }
-    // Sets each number to that of the other where it is less. Returns whether one was.
+    // Component-wise maximum. Returns whether any number increased.
     bool Raise(const LeastEffort& to) {
         const LeastEffort before = *this;
         substeps = std::max(substeps, to.substeps);
@@ -36,7 +36,7 @@ struct LeastEffort {
     }
     friend bool operator==(const LeastEffort&, const LeastEffort&) = default;
 };
-// Of settings from 0 to 255; how errors are corrected is the same for all islands.
+// From settings in 0..255; the position correction is the same for all islands.
 inline LeastEffort ToLeastEffort(const SolverSettings& settings) {
     return {static_cast<uint8_t>(settings.substeps), static_cast<uint8_t>(settings.velocityIterations),
             static_cast<uint8_t>(settings.positionIterations)};
@@ -46,21 +46,21 @@ struct Joint {
     uint32_t body[2] = {0, 0};      // A and B
     uint32_t next[2] = {~0u, ~0u};  // the next joint of A and of B
     std::unique_ptr<JointType> type;
-    JointLocks locks;      // of the type, as the layout has them
-    uint32_t maxRows = 0;  // likewise
+    JointLocks locks;      // locks of the type, as known to the layout
+    uint32_t maxRows = 0;  // MaxRows of the type, likewise
     ColorSlot color;
     uint32_t generation = 0;
     bool exists = false;
     bool enabled = true;
     bool collideConnected = false;
     bool overridesMass = false;      // massOverride is not none
-    bool still[2] = {false, false};  // the body is immovable: static, kinematic or frozen
+    bool fixed[2] = {false, false};  // the body is immovable: static, kinematic or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
-    LeastEffort effort;  // of its island
+    LeastEffort effort;  // minimum effort for its island
     MassOverride massOverride;
     uint64_t userData = 0;
-    uint64_t teleportedBefore = 0;  // the step before which a body of its mechanism was teleported last
+    uint64_t teleportedBefore = 0;  // the step before which a body of its mechanism was last teleported
 
     void SetMassOverride(const MassOverride& o) {
         massOverride = o;
@@ -79,24 +79,24 @@ public:
     std::vector<JointRecord> records;
     std::vector<JointType*> types;
     std::vector<Joint> joints;
-    std::vector<LoadLevel> gaps;  // how far the anchors are apart
+    std::vector<LoadLevel> gaps;  // load levels of gaps between anchors
     IndexSet breakable;
 
     uint32_t Count() const { return count_; }
-    uint32_t Allocate();        // an index with fresh values; exists is set
-    void Free(uint32_t index);  // not linked, not colored
+    uint32_t Allocate();        // an index with default values; exists is set
+    void Free(uint32_t index);  // must be neither linked nor colored
     bool Find(JointId id) const {
         return id.index < joints.size() && joints[id.index].exists && joints[id.index].generation == id.generation;
     }
     JointId IdOf(uint32_t index) const { return {index, joints[index].generation}; }
 
-    // Its impulses and forces are zero from now on.
+    // Clears its impulses and forces.
     void Forget(uint32_t index);
 
-    // Puts the joint on the lists of its two bodies, or takes it off them.
+    // Adds the joint to the lists of its two bodies, or removes it.
     void Link(uint32_t index);
     void Unlink(uint32_t index);
-    // The joints of a body, the newest first. The visitor may remove the one that it is at.
+    // Visits the joints of a body, the newest first. The visitor may remove the one it is called with.
     template <class Visit>
     void VisitOf(uint32_t body, Visit&& visit) const {
         if (body >= first_.size()) return;
@@ -108,7 +108,7 @@ public:
         }
     }
     bool HasAny(uint32_t body) const { return body < first_.size() && first_[body] != kNone; }
-    // Whether some joint keeps the two bodies from colliding.
+    // Whether some joint disables collisions between the two bodies.
     bool ForbidsContact(uint32_t bodyA, uint32_t bodyB) const;
     friend size_t HeapBytes(const JointStore& store);
 

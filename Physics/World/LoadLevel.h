@@ -1,5 +1,5 @@
-// By how much a contact or a joint is off at the system's effort, as a level in powers of two
-// (Stages/ContactLoads.h): what its island's effort follows.
+// How far a contact or joint exceeds its accuracy target with the system's effort, quantized to powers of two
+// (Stages/ContactLoads.h); determines its island's effort.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 namespace fulcrum {
 
 struct LoadLevel {
-    uint8_t level = 0;   // that lasts
-    uint8_t recent = 0;  // of the last step
-    uint8_t steps = 0;   // for how many it has been more than `level`
-    // SolverGroup::stiffness of the last step, at least 1; 0: it has not been solved yet.
+    uint8_t level = 0;   // persistent level
+    uint8_t recent = 0;  // level of the last step
+    uint8_t steps = 0;   // number of steps for which it has exceeded `level`
+    // SolverGroup::stiffness of the last step, at least 1; 0: not solved yet.
     uint8_t stiffness = 0;
 };
 

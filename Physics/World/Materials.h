@@ -1,4 +1,4 @@
-// The friction and restitution of two bodies where they touch.
+// Combined friction and restitution of two bodies.
 #pragma once
 
 #include <Fulcrum/Physics/World/BodyStore.h>
@@ -9,11 +9,10 @@ namespace fulcrum {
 struct PairMaterial {
     float friction, restitution;
 };
-// Of body A, and of body B where it touches with a shape of which `material` is the index into the palette, if there is
-// one.
+// For bodies A and B; `material`: index into the palette of B's shape, if it has one.
 PairMaterial MaterialOfPair(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB, const Shape& shapeB,
                             uint8_t material);
-// Writes that of a pair into its record.
+// Writes the combined material of a pair to its record.
 void CombineMaterials(const BodyStore& bodies, PairStore& pairs, uint32_t pair);
 
 }  // namespace fulcrum

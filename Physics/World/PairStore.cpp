@@ -6,7 +6,7 @@ namespace fulcrum {
 
 namespace {
 
-// An eighth to spare: of the largest arrays of a world, doubling would leave up to half unused.
+// Grows by an eighth: doubling the largest arrays of a world would leave up to half unused.
 template <class T>
 void ReserveAnother(std::vector<T>& elements) {
     const size_t size = elements.size();
@@ -59,7 +59,7 @@ uint32_t PairStore::Allocate() {
         if (keepsMassOverrides_) massOverrides.emplace_back();
         if (keepsReported_) reported.emplace_back();
         active.Reserve(index + 1);
-        free_.reserve(pairs.capacity());  // so that removing never allocates
+        free_.reserve(pairs.capacity());  // so that Remove never allocates
     }
     pairs[index] = {};
     records[index] = {};
@@ -107,24 +107,24 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
     pairs[index].colliderA = colliderA;
     pairs[index].colliderB = colliderB;
 
-    Enter(Key(colliderA, colliderB), index);
+    AddKey(Key(colliderA, colliderB), index);
     ++size_;
     Link(index);
     return index;
 }
 
-void PairStore::Enter(uint64_t key, uint32_t index) {
+void PairStore::AddKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t i = FirstPlace(key);
     while (table_[i].index != kNone) i = (i + 1) & mask;
     table_[i] = {key, index};
 }
 
-void PairStore::Strike(uint64_t key, uint32_t index) {
+void PairStore::RemoveKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t hole = FirstPlace(key);
     while (table_[hole].key != key || table_[hole].index != index) hole = (hole + 1) & mask;
-    // Entries behind the hole move up where that takes them to no place before their first one.
+    // Backward-shift deletion: entries after the hole move up unless that would put them before their home slot.
     for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
         if (((i - FirstPlace(table_[i].key)) & mask) >= ((i - hole) & mask)) {
             table_[hole] = table_[i];
@@ -165,7 +165,7 @@ void PairStore::Remove(uint32_t index) {
         return;
     }
     Unlink(index);
-    Strike(Key(pairs[index].colliderA, pairs[index].colliderB), index);
+    RemoveKey(Key(pairs[index].colliderA, pairs[index].colliderB), index);
     pairs[index].exists = false;
     free_.push_back(index);
     --size_;

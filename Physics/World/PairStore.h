@@ -1,6 +1,6 @@
-// Pairs of colliders whose fat bounds overlap, with their manifolds; a pair lives as long as the overlap lasts. Pairs
-// keep their index, so pairs, records and colors refer to each other by it. A pair is active while one of its bodies is
-// awake.
+// Pairs of colliders with overlapping fat bounds, and their manifolds; a pair exists as long as the bounds overlap.
+// Pairs have stable indices, by which pairs, records and colors refer to each other. A pair is active while one of its
+// bodies is awake.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -18,36 +18,36 @@
 namespace fulcrum {
 
 struct alignas(64) Pair {
-    // First cache line: all that is read of a pair that keeps its manifold.
+    // First cache line: all data read of a pair that keeps its manifold.
     uint32_t bodyA = 0, bodyB = 0;  // A is dynamic, B any
     uint32_t colliderA = 0, colliderB = 0;
     const ConvexShape* shapeA = nullptr;
     const Shape* shapeB = nullptr;  // convex, a plane or a surface
-    RelativePose reference;         // of piece B in piece A when the manifold was found
-    uint8_t pointCount = 0;         // of the manifold, as found at `reference`; of the record, unless onSeam
+    RelativePose reference;         // pose of shape B in shape A when the manifold was found
+    uint8_t pointCount = 0;         // of the manifold found at `reference`; also of the record, unless onSeam
     bool exists : 1 = false;
     bool fixedB : 1 = false;    // B's body is immovable: static or kinematic
-    bool offset : 1 = false;    // a piece is not at its body's center frame (child of a compound)
+    bool offset : 1 = false;    // a shape is not at its body's center frame (child of a compound)
     bool surface : 1 = false;   // B is a surface
-    bool touching : 1 = false;  // was active, with points, in the last step
-    bool onSeam : 1 = false;    // but its record has none of them: a seam alone makes the contact
-    bool isMore = false;        // of a surface: a further manifold of a pair that has others
-    uint8_t material = 0;       // of a surface: what of its palette touches
+    bool touching : 1 = false;  // was active and had points in the last step
+    bool onSeam : 1 = false;    // its record has no points, since the contact is a ghost collision at a seam
+    bool isMore = false;        // for surfaces: an additional manifold of another pair
+    uint8_t material = 0;       // for surfaces: index into the palette
     // Second line.
     PairCache cache;
     uint32_t features[Manifold::kMaxPoints] = {0, 0, 0, 0};
     ColorSlot color;
-    uint32_t more = ~0u;    // of a surface: the index of the next manifold of these two colliders
-    uint32_t triangle = 0;  // of a surface: the one of the deepest point
+    uint32_t more = ~0u;    // for surfaces: index of the next manifold of these two colliders
+    uint32_t triangle = 0;  // for surfaces: the triangle of the deepest point
 };
 static_assert(sizeof(Pair) == 128);
 
-// What contact events have said of a pair, to go on with and to end.
+// The reported state of a pair for contact events.
 struct ReportedContact {
     BodyId bodyA, bodyB;
     uint32_t childA = 0, childB = 0;
     bool isOn = false;  // it began, and has not ended
-    // Of its event in this step, where it has one.
+    // Kind of its event in this step, if any.
     ContactEvent::Kind kind = ContactEvent::Kind::Stay;
     uint32_t manifoldCount = 0;
 };
@@ -56,24 +56,24 @@ class PairStore {
 public:
     std::vector<Pair> pairs;
     std::vector<ContactRecord> records;  // same index
-    // Same index, of records with kMassOverride; empty without a contact listener, which alone sets them.
+    // Same index, used for records with kMassOverride; empty without a contact listener, which sets them.
     std::vector<MassOverride> massOverrides;
     void KeepMassOverrides(bool keep);
-    // Same index, of a pair's first manifold; empty without contact events. It outlasts their sleep.
+    // Same index, for a pair's first manifold; empty without contact events. Kept while bodies sleep.
     std::vector<ReportedContact> reported;
-    std::vector<ReportedContact> ended;  // of pairs that were removed since the last events
+    std::vector<ReportedContact> ended;  // for pairs removed since the last events
     void KeepReported(bool keep);
     std::vector<LoadLevel> loads;  // same index
-    uint64_t loadVersion = 1;      // grows where the level of some load changes, of joints, too
+    uint64_t loadVersion = 1;      // incremented when a load level changes, also of joints
     IndexSet active;
 
     // Index of the pair of two colliders, or kNone.
     static constexpr uint32_t kNone = ~0u;
     uint32_t Find(uint32_t colliderA, uint32_t colliderB) const;
-    uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // not there yet
-    // A further manifold of the pair `of`, between the same shapes and bodies. Not found by Find, and not active.
+    uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // must not exist yet
+    // Adds a manifold to the pair `of`, between the same shapes and bodies. Not found by Find, and not active.
     uint32_t AddMore(uint32_t of);
-    // Calls visit(pair) for all pairs of a collider, active or not, further manifolds left out; the visitor may remove
+    // Calls visit(pair) for all pairs of a collider, active or not, except additional manifolds; the visitor may remove
     // it.
     template <class Visitor>
     void VisitOf(uint32_t collider, Visitor&& visit) const {
@@ -84,13 +84,13 @@ public:
             index = next;
         }
     }
-    void Remove(uint32_t index);  // not colored; its further manifolds are removed by themselves
+    void Remove(uint32_t index);  // must not be colored; its additional manifolds must be removed separately
     friend size_t HeapBytes(const PairStore& store);
 
 private:
     friend struct SnapshotAccess;
     static uint64_t Key(uint32_t a, uint32_t b) { return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a); }
-    // The pairs of each collider as a list, without which removing a collider would mean to look at all pairs.
+    // Linked lists of the pairs of each collider, so that removing a collider need not scan all pairs.
     struct Links {
         uint32_t next[2] = {kNone, kNone}, previous[2] = {kNone, kNone};  // in the lists of colliders A and B
     };
@@ -104,10 +104,10 @@ private:
     uint32_t Allocate();
     uint32_t FirstPlace(uint64_t key) const;
     void Grow();
-    void Enter(uint64_t key, uint32_t index);   // into the table, which has room
-    void Strike(uint64_t key, uint32_t index);  // from the table, which has the two
+    void AddKey(uint64_t key, uint32_t index);     // inserts into the table, which must have space
+    void RemoveKey(uint64_t key, uint32_t index);  // removes from the table, which must contain it
 
-    // Open addressing with linear probing; at most half full. Only an index: its order influences nothing.
+    // Open addressing with linear probing; at most half full. Its order does not influence results.
     struct Entry {
         uint64_t key;
         uint32_t index = kNone;

@@ -1,5 +1,5 @@
-// The sensors and what is inside them. Written by BodyInterface between steps and by the Sense stage, which alone reads
-// it but for the events and lists that it leaves to the user.
+// The sensors and the bodies inside them. Written by BodyInterface between steps and by the Sense stage; only events
+// and lists are read by others.
 #pragma once
 
 #include <Fulcrum/Physics/SensorEvent.h>
@@ -14,20 +14,20 @@ struct Sensor {
     BodyId id;
     SensorSees sees = SensorSees::Default;
     bool reportsStay = true;
-    bool removed = false;        // since the last step: the next one reports what leaves it
-    std::vector<BodyId> inside;  // ascending, as the last step ended
+    bool removed = false;        // since the last step: the next one reports the end events
+    std::vector<BodyId> inside;  // ascending, at the end of the last step
     std::vector<BodyId> insideNext;
     std::vector<SensorEvent> events;  // of this step
 };
 
 struct SensorStore {
     std::vector<Sensor> sensors;  // ascending by id
-    // Bodies that were created, placed or given other settings since the last step; in no order, repeated.
+    // Bodies that were created, placed or given other settings since the last step; unordered, with repetitions.
     std::vector<uint32_t> changed;
     std::vector<SensorEvent> events;  // of the last step
 
     bool IsEmpty() const { return sensors.empty(); }
-    // The place of a sensor, or where it would be.
+    // The index of a sensor, or where it would be inserted.
     uint32_t PlaceOf(BodyId id) const {
         const auto at = std::lower_bound(sensors.begin(), sensors.end(), id,
                                          [](const Sensor& s, BodyId other) { return s.id < other; });
@@ -47,7 +47,7 @@ struct SensorStore {
         sensor.removed = false;
         changed.push_back(id.index);
     }
-    // It is one.
+    // The body must be a sensor.
     void Remove(BodyId id) { sensors[PlaceOf(id)].removed = true; }
 };
 

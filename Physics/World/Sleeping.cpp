@@ -10,8 +10,8 @@ namespace fulcrum {
 
 namespace {
 
-// What falls asleep outside its fat bounds, because it was fast or the step long, would not be found until it
-// wakes.
+// Bodies that fall asleep outside their fat bounds, because they were fast or the step long, would otherwise not be
+// found until they wake.
 void RefitFatBounds(const SleepStores& stores, CollidersOutsideFatBounds& outsideFatBounds, uint32_t body) {
     ColliderStore& colliders = stores.colliders;
     VisitColliders(stores.bodies, colliders, body, [&](uint32_t i) {
@@ -37,7 +37,7 @@ void FindAwakeIslands(const BodyStore& bodies, const PairStore& pairs, const Con
     });
     for (int c = 0; c <= ConstraintColoring::kColors; ++c)
         for (const ConstraintColoring::Entry& entry : coloring.At(c).Of(ConstraintColoring::Kind::Joint))
-            if (!entry.stillA && !entry.stillB)
+            if (!entry.fixedA && !entry.fixedB)
                 sets.Unite(bodies.cold[entry.bodyA].awakePlace, bodies.cold[entry.bodyB].awakePlace);
     for (uint32_t i = 0; i < roots.size(); ++i) roots[i] = sets.Find(i);
 }

@@ -1,4 +1,4 @@
-// Islands are sets of dynamic bodies that touch one another or are joined: they fall asleep together. One thread.
+// Islands are sets of dynamic bodies connected by contacts and joints: they fall asleep together. One thread.
 #pragma once
 
 #include <Fulcrum/Physics/World/Waking.h>
@@ -7,14 +7,15 @@
 
 namespace fulcrum {
 
-// Finds the island of each awake body, as the place of its first one in BodyStore::awake. `roots` is room for as many
-// as are awake.
+// Finds the island of each awake body, as the index of its first one in BodyStore::awake. `roots` must have one element
+// per awake body.
 void FindAwakeIslands(const BodyStore& bodies, const PairStore& pairs, const ConstraintColoring& coloring,
                       std::span<uint32_t> roots);
-// Makes the bodies, all awake, one sleeping island. RestPairs is to follow. Their fat bounds are made to hold them.
+// Puts the bodies, all awake, to sleep as one island, and refits fat bounds that do not contain them. Must be followed
+// by RestPairs.
 void PutToSleep(const SleepStores& stores, CollidersOutsideFatBounds& outsideFatBounds,
                 std::span<const uint32_t> bodies);
-// Pairs without an awake body rest until one of their bodies wakes.
+// Deactivates pairs without an awake body, until one of their bodies wakes.
 void RestPairs(const BodyStore& bodies, PairStore& pairs, ConstraintColoring& coloring);
 // Puts the island of an awake body to sleep, slow or not.
 void SleepIslandOf(WorldState& world, uint32_t body);

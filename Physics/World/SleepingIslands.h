@@ -1,4 +1,4 @@
-// Which bodies sleep together: they wake together. Written by the Sleep stage and by WakeBody. Serial.
+// The sets of bodies that fell asleep together, and wake together. Written by the Sleep stage and by WakeBody. Serial.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@ class SleepingIslands {
 public:
     static constexpr uint32_t kNone = ~0u;
 
-    // A new island of `bodies`; returns its index.
+    // Adds an island of `bodies`; returns its index.
     uint32_t Add(std::span<const uint32_t> bodies);
     std::span<const uint32_t> Bodies(uint32_t island) const { return islands_[island]; }
     void Remove(uint32_t island);
-    void RemoveBody(uint32_t island, uint32_t body);  // the last one removes the island
+    void RemoveBody(uint32_t island, uint32_t body);  // removing the last body removes the island
     uint32_t Count() const { return static_cast<uint32_t>(islands_.size() - free_.size()); }
     friend size_t HeapBytes(const SleepingIslands& sleeping);
 

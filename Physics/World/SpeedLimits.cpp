@@ -7,7 +7,7 @@ namespace fulcrum {
 
 namespace {
 
-// m/s, m/s2 and so on: more makes the largest speed in any step that moves anything.
+// m/s, m/s2 etc.: larger changes reach the speed limit in any step anyway.
 constexpr double kMostChange = 1e18;
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace fulcrum {
 
 class UnionFind {
 public:
-    // `parents` is room for as many elements as there are, owned by the caller.
+    // `parents` has one entry per element, and is owned by the caller.
     explicit UnionFind(std::span<uint32_t> parents) : parents_(parents) {
         std::iota(parents_.begin(), parents_.end(), 0u);
     }

@@ -13,7 +13,9 @@ void WakeOne(const SleepStores& stores, uint32_t body) {
     bodies.MarkAwake(body);
     bodies.cold[body].sleepingIsland = SleepingIslands::kNone;
     bodies.UpdateInertia(body);
-    const Vector3 acceleration = stores.settings.gravity * bodies.dynamics[body].gravityFactor;
+    const BodyDynamics& dynamics = bodies.dynamics[body];
+    Vector3 acceleration = bodies.GravityOf(body, stores.settings.gravity) * dynamics.gravityFactor;
+    if (dynamics.hasForce) acceleration += bodies.cold[body].force * dynamics.inverseMass;
     for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];
     RequeueColliders(bodies, stores.colliders, body);
 }
@@ -68,7 +70,7 @@ void WakeJoined(const SleepStores& stores, uint32_t body) {
 }
 
 void WakeInside(const SleepStores& stores, const Bounds& bounds) {
-    // Waking changes no tree, but collect first: a query must not see the world change under it.
+    // Collects the bodies first, since the world must not change during a query.
     std::vector<uint32_t> found;
     stores.colliders.movingTree.Query(
         bounds, [&](uint32_t collider) { found.push_back(stores.colliders.colliders[collider].body); });

@@ -1,15 +1,15 @@
-// What sleeps is woken: by a contact, a joint, a call of the interface. Bodies that fell asleep together wake together.
-// One thread.
+// Wakes sleeping bodies: by contacts, joints and calls of the interface. Bodies that fell asleep together wake
+// together. One thread.
 #pragma once
 
 #include <Fulcrum/Physics/World/WorldState.h>
 
 namespace fulcrum {
 
-// What changes where bodies wake or fall asleep: they and their islands, the colliders whose pairs are to be searched,
-// the joints that act, or act no more. The settings are read.
+// The stores that change when bodies wake or fall asleep: bodies and islands, colliders whose pairs must be searched,
+// colors of joints. The settings are read.
 struct SleepStores {
-    // Not explicit: what changes the world between steps hands over all of it.
+    // Implicit, for callers that have the whole world.
     SleepStores(WorldState& world)
         : settings(world.settings),
           bodies(world.bodies),
@@ -26,13 +26,13 @@ struct SleepStores {
     SleepingIslands& sleeping;
 };
 
-// Wakes a body, the island it sleeps in and what is joined to them; their colliders are queued for the search of pairs.
+// Wakes a body, the island it sleeps in and bodies jointed to them; their colliders are queued for the search of pairs.
 void WakeBody(const SleepStores& stores, uint32_t body);
-// Wakes what enabled joints hold to the body, which itself may be one that does not sleep.
+// Wakes bodies connected to the body by enabled joints; the body itself may be awake or static.
 void WakeJoined(const SleepStores& stores, uint32_t body);
-// Wakes what overlaps the bounds.
+// Wakes bodies that overlap the bounds.
 void WakeInside(const SleepStores& stores, const Bounds& bounds);
-// Has the body's pairs searched anew.
+// Queues the body's colliders for the search of pairs.
 void RequeueColliders(const BodyStore& bodies, ColliderStore& colliders, uint32_t body);
 
 }  // namespace fulcrum

@@ -17,7 +17,7 @@ thread_local WorldLock::Scope* tInnermost = nullptr;
 
 struct WorldLock::State {
     std::shared_mutex mutex;
-    std::atomic<uint32_t> writers{0};  // that wait or hold
+    std::atomic<uint32_t> writers{0};  // writers that wait or hold the lock
 };
 
 WorldLock::WorldLock() : state_(std::make_unique<State>()) {}
@@ -66,7 +66,7 @@ WorldLock::Scope::~Scope() {
     tInnermost = outer_;
 }
 
-// Refusals are looked for before the scope is this thread's innermost.
+// Checks for refusal before the scope becomes this thread's innermost.
 WorldLock::Shared::Shared(WorldLock& lock) : Shared(lock, RefusalOfReading(lock)) {}
 WorldLock::Shared::Shared(WorldLock& lock, std::optional<Error> refusal)
     : Scope(lock, Access::Reads), refusal_(std::move(refusal)) {

@@ -1,6 +1,6 @@
-// Many readers or one writer: queries share the world, changes and steps have it alone. A reader that arrives while a
-// writer waits lets it go first, once, so that neither starves the other. Access is recorded per thread: nested access
-// of a kind that the thread has already takes no lock, and access for which it would wait for itself is refused.
+// Reader-writer lock: queries share the world, changes and steps have exclusive access. A reader that arrives while a
+// writer waits lets it go first, once, so that neither starves. Access is recorded per thread: nested access of a kind
+// that the thread already has takes no lock, and access that would deadlock is refused.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -17,14 +17,14 @@ public:
     ~WorldLock();
 
     enum class Access : uint8_t { None, Reads, Changes };
-    // The highest access that this thread has, by itself or from the thread whose job it runs.
+    // The highest access of this thread, its own or inherited from the thread whose job it runs.
     static Access OfThisThread(const WorldLock& lock);
     // Why this thread may not read or change the world now; empty if it may.
     static std::optional<Error> RefusalOfReading(const WorldLock& lock);
     static std::optional<Error> RefusalOfChanging(const WorldLock& lock);
 
-    // Records this thread's access for the lifetime of the object, and takes no lock. By itself it is for workers that
-    // run jobs of a thread which holds the lock.
+    // Records this thread's access for the lifetime of the object, without taking the lock. Used directly by workers
+    // that run jobs of a thread which holds the lock.
     class Scope {
     public:
         Scope(WorldLock& lock, Access access);
@@ -34,7 +34,7 @@ public:
 
     protected:
         WorldLock& lock_;
-        const Access before_;  // of this thread, outside the scope
+        const Access before_;  // this thread's access outside the scope
 
     private:
         friend class WorldLock;
@@ -71,7 +71,7 @@ private:
     const std::unique_ptr<State> state_;
 };
 
-// A job system that gives workers the access of the thread whose job they run, for as long as they run it.
+// A job system that gives workers the access of the thread whose job they run, while they run it.
 class WorldJobs final : public JobSystem {
 public:
     WorldJobs(JobSystem& jobs, WorldLock& lock) : jobs_(jobs), lock_(lock) {}

@@ -1,5 +1,5 @@
-// The world: bodies, colliders, pairs, joints, sensors. What changes several of them at once stands beside this file.
-// It knows nothing of how it is stepped, nor of the interfaces.
+// The world: bodies, colliders, pairs, joints, sensors. Functions that change several of them are in files beside this
+// one. Independent of the stages and the interfaces.
 #pragma once
 
 #include <Fulcrum/Jobs/ThreadPool.h>
@@ -18,12 +18,14 @@
 namespace fulcrum {
 
 class ContactListener;
+class StepObserver;
 
 struct WorldState {
     SystemSettings settings;
     std::unique_ptr<ThreadPool> ownJobs;
     std::unique_ptr<JobSystem> jobs;  // the user's, or our own, as WorldJobs
     const ContactListener* listener = nullptr;
+    StepObserver* observer = nullptr;
 
     BodyStore bodies;
     ColliderStore colliders;
@@ -34,16 +36,16 @@ struct WorldState {
     SensorStore sensors;
 
     std::vector<uint32_t> removed;  // bodies to forget before the next step
-    uint64_t step = 0;              // how many have begun
+    uint64_t step = 0;              // number of steps begun
 
-    // For the queries.
+    // Lock for queries.
     WorldLock lock;
     CollidersOutsideFatBounds outsideFatBounds;
 };
 
 size_t HeapBytes(const WorldState& world);
 
-// Calls visit(collider) for the pieces of a body.
+// Calls visit(collider) for the colliders of a body.
 template <class Visitor>
 void VisitColliders(const BodyStore& bodies, const ColliderStore& colliders, uint32_t body, Visitor&& visit) {
     const BodyCold& cold = bodies.cold[body];
@@ -60,7 +62,7 @@ void VisitColliders(const WorldState& world, uint32_t body, Visitor&& visit) {
     VisitColliders(world.bodies, world.colliders, body, visit);
 }
 
-// Which piece of its body a collider is.
+// The index of a collider's child in its body's shape.
 inline uint32_t ChildOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
     const BodyCold& cold = bodies.cold[colliders.colliders[collider].body];
     uint32_t before = 0;
@@ -72,7 +74,7 @@ inline uint32_t ChildOf(const BodyStore& bodies, const ColliderStore& colliders,
     return before + (collider - run.first);
 }
 
-// The piece's center frame in that of its body.
+// The collider's center frame in that of its body.
 inline RelativePose LocalOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
     const ColliderShape& piece = colliders.shapes[collider];
     if (!piece.onOrigin) return piece.local;
@@ -80,26 +82,26 @@ inline RelativePose LocalOf(const BodyStore& bodies, const ColliderStore& collid
             piece.local.rotation};
 }
 
-// World space, of the piece's own frame.
+// World pose of the shape's own frame.
 inline Pose ColliderPoseOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
     const Pose body = bodies.CenterPoseOf(colliders.colliders[collider].body);
     return colliders.shapes[collider].offset ? body * LocalOf(bodies, colliders, collider) : body;
 }
 
-// The piece, seen from its body's center frame.
+// The shape with its pose in its body's center frame.
 inline ColliderShape PieceOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider) {
     ColliderShape piece = colliders.shapes[collider];
     piece.local = LocalOf(bodies, colliders, collider);
     return piece;
 }
 
-// Whether a body is a single collider, which stays so.
+// Whether a body has a single collider, permanently.
 inline bool IsOnePiece(const BodyStore& bodies, uint32_t body) {
     const BodyCold& cold = bodies.cold[body];
     return cold.colliderCount == 1 && !cold.children;
 }
 
-// Has the world note between steps what events of the settings follow from, and no more.
+// Makes the world record between steps what the enabled events need.
 void KeepForEvents(WorldState& world);
 
 }  // namespace fulcrum

@@ -1,14 +1,17 @@
 #include <Fulcrum/Samples/Runner/Commands.h>
 
 #include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
 #include <Fulcrum/Samples/Runner/MeshImport.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Runner/Recorder.h>
+#include <Fulcrum/Samples/Runner/RunEnvironment.h>
 #include <Fulcrum/Samples/Runner/RunReport.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 #include <Fulcrum/Samples/Viewer/GlbWriter.h>
 #include <Fulcrum/Samples/Viewer/HtmlWriter.h>
+#include <Fulcrum/Version.h>
 
 #include <nlohmann/json.hpp>
 
@@ -21,7 +24,6 @@
 namespace fulcrum {
 namespace {
 
-constexpr const char* kOutput = "out";
 constexpr double kDroppedSize = 1;  // m, largest extent of a dropped mesh
 
 int Fail(const std::string& message) {
@@ -35,7 +37,7 @@ struct Job {
     SceneInput input;
     const RunOptions& options;
     const JsonOutput& json;
-    std::string name;  // of the report and of the files in out/
+    std::string name;  // of the report and of the files in options.out
     std::string description;
 };
 
@@ -44,26 +46,29 @@ struct Job {
 std::string CheckOutputs(const RunOptions& options, const JsonOutput& json) {
     std::error_code error;
     if (options.recordHtml || options.recordGlb) {
-        std::filesystem::create_directories(kOutput, error);
-        if (error) return std::string("cannot create the folder ") + kOutput + ": " + error.message();
+        std::filesystem::create_directories(options.out, error);
+        if (error) return "cannot create the folder " + options.out.string() + ": " + error.message();
     }
     return json.Check();
 }
 
 // Writes the files that the options name. Returns an empty text, or what went wrong.
 std::string WriteOutputs(const Job& job, const Recorder* recorder, const RunFigures& figures) {
-    const std::filesystem::path base = std::filesystem::path(kOutput) / job.name;
+    const std::filesystem::path base = job.options.out / job.name;
     const auto write = [&](const char* extension, auto writer) -> std::string {
         const std::filesystem::path path = base.string() + extension;
         const Status status = writer(recorder->recording, path);
         if (!status) return status.GetError().message;
-        std::printf("Wrote %s (%.1f MB)\n", path.c_str(), static_cast<double>(std::filesystem::file_size(path)) / 1e6);
+        if (!job.options.isQuiet)
+            std::printf("Wrote %s (%.1f MB)\n", path.c_str(),
+                        static_cast<double>(std::filesystem::file_size(path)) / 1e6);
         return {};
     };
     std::string trouble;
     if (job.options.recordHtml) trouble = write(".html", WriteHtml);
     if (trouble.empty() && job.options.recordGlb) trouble = write(".glb", WriteGlb);
-    if (trouble.empty() && job.json.IsWanted()) trouble = job.json.Write(ReportJson(job.name, figures, job.input.seed));
+    if (trouble.empty() && job.json.IsWanted())
+        trouble = job.json.Write(RunDocument(job.scene, job.name, figures, job.input.seed), !job.options.isQuiet);
     return trouble;
 }
 
@@ -86,19 +91,24 @@ int RunJob(const Job& job) {
         recorder->recording.description = job.description;
     }
     Result<RunFigures> run = [&] {
-        Progress progress(job.name.c_str(), steps);
+        std::optional<Progress> progress;
+        if (!job.options.isQuiet) progress.emplace(job.name.c_str(), steps);
         return Simulate(world, 0, steps, job.options.dt, pool ? pool->WorkerCount() : 1, [&] {
             if (recorder) recorder->AfterStep();
-            progress.Advance();
+            if (progress) progress->Advance();
         });
     }();
     if (!run) return Fail(job.name + ": " + run.GetError().message);
 
     const std::vector<ReportLine> lines = ReportLines(job.scene, run.Value(), job.input.seed);
     if (recorder) recorder->recording.report = lines;
-    std::printf("%s: %s\n%s", job.name.c_str(), job.description.c_str(), ReportText(lines).c_str());
+    if (!job.options.isQuiet)
+        std::printf("%s: %s\n%s", job.name.c_str(), job.description.c_str(), ReportText(lines).c_str());
     const std::string unwritten = WriteOutputs(job, recorder ? &*recorder : nullptr, run.Value());
-    return unwritten.empty() ? 0 : Fail(unwritten);
+    if (!unwritten.empty()) return Fail(unwritten);
+    if (VerdictOf(job.scene, run.Value()) == AccuracyVerdict::Fail)
+        return Fail(job.name + ": accuracy " + AccuracyText(job.scene, run.Value()));
+    return 0;
 }
 
 // A broken file may claim a huge size: this limit makes allocations fail while it is read instead of swapping.
@@ -141,9 +151,10 @@ int Drop(const Command& command, SceneInput input, const JsonOutput& json) {
     const ImportedShape& model = imported.Value();
     const std::string name = command.file.filename().string();
     for (const std::string& warning : model.warnings) std::fprintf(stderr, "fulcrum: warning: %s\n", warning.c_str());
-    std::printf("%s: %zu points became %zu hull%s of %zu vertices in all; %.4g units are %g m here\n", name.c_str(),
-                model.points, model.hulls, model.hulls == 1 ? "" : "s", model.hullVertices, model.fileSize,
-                kDroppedSize);
+    if (!command.options.isQuiet)
+        std::printf("%s: %zu points became %zu hull%s of %zu vertices in all; %.4g units are %g m here\n", name.c_str(),
+                    model.points, model.hulls, model.hulls == 1 ? "" : "s", model.hullVertices, model.fileSize,
+                    kDroppedSize);
     input.shape = model.shape;
     input.count = command.count;
     const std::string dropped = std::to_string(command.count) + " of " + name,
@@ -154,10 +165,17 @@ int Drop(const Command& command, SceneInput input, const JsonOutput& json) {
     const Result<ImportedMesh> ground =
         ReadWithinMemory([&] { return ImportMesh(command.onto, command.ontoSettings); });
     if (!ground) return Fail(ground.GetError().message);
-    PrintGround(command.onto.filename().string(), ground.Value());
+    if (!command.options.isQuiet) PrintGround(command.onto.filename().string(), ground.Value());
     input.ground = ground.Value().mesh;
     return RunJob({*command.scene, input, command.options, json, title + "_onto_" + command.onto.stem().string(),
                    dropped + " dropped onto " + command.onto.filename().string()});
+}
+
+int PrintVersion() {
+    const std::string commit = CommitText();
+    std::printf("Fulcrum %s\ncommit    %s\ncompiler  %s\nlanes     %d\n", FULCRUM_VERSION_STRING,
+                commit.empty() ? "unknown" : commit.c_str(), CompilerName().c_str(), kLanes);
+    return 0;
 }
 
 int List() {
@@ -187,6 +205,7 @@ int Execute(const Command& command) {
                 {*command.scene, input, command.options, json, command.scene->name, command.scene->description});
         case CommandKind::Drop: return Drop(command, input, json);
         case CommandKind::List: return List();
+        case CommandKind::Version: return PrintVersion();
         default: std::printf("%s", command.help.c_str()); return 0;
     }
 }

@@ -32,7 +32,7 @@ std::string JsonOutput::Check() const {
     return {};
 }
 
-std::string JsonOutput::Write(const nlohmann::ordered_json& json) const {
+std::string JsonOutput::Write(const nlohmann::ordered_json& json, bool saysWhere) const {
     const std::string text = json.dump(2) + "\n";
     if (path_ == "-") {
         for (size_t written = 0; written < text.size();) {
@@ -46,7 +46,7 @@ std::string JsonOutput::Write(const nlohmann::ordered_json& json) const {
     file << text;
     file.close();
     if (!file) return "cannot write " + path_.string();
-    std::printf("Wrote %s\n", path_.c_str());
+    if (saysWhere) std::printf("Wrote %s\n", path_.c_str());
     return {};
 }
 

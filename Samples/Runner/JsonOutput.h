@@ -17,9 +17,10 @@ public:
     JsonOutput& operator=(const JsonOutput&) = delete;
 
     bool IsWanted() const { return !path_.empty(); }
-    // Both return an empty text, or what is wrong. Check is for before the simulation. Write prints where it wrote.
+    // Both return an empty text, or what is wrong. Check is for before the simulation. Write prints where it wrote, if
+    // asked to.
     std::string Check() const;
-    std::string Write(const nlohmann::ordered_json& json) const;
+    std::string Write(const nlohmann::ordered_json& json, bool saysWhere = true) const;
 
 private:
     std::filesystem::path path_;

@@ -97,6 +97,10 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     AddText(app, "--json", "also write the report as JSON; -: to standard output, all else to standard error",
             [&](const std::string& text) { options.json = text; })
         ->type_name("FILE");
+    AddText(app, "--out", "folder of what is recorded (default: out)", [&](const std::string& text) {
+        options.out = text;
+    })->type_name("DIR");
+    app.add_flag("--quiet", options.isQuiet, "say nothing but what goes wrong; the exit status says the rest");
     AddSeed(app, "--seed", "of the random numbers of scenes that use them (default 1)",
             [&](uint64_t value) { options.seed = value; });
 }
@@ -166,13 +170,24 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     AddOntoOptions(*drop, command);
     AddRunOptions(*drop, command.options);
     CLI::App* list = app.add_subcommand("list", "list the scenes");
+    bool wantsVersion = false;
+    app.add_flag("--version", wantsVersion, "the version, its commit, compiler and lanes");
+    if (!arguments.empty() && arguments[0] == "help") {
+        arguments.erase(arguments.begin());
+        const std::vector<std::string> names{"run", "drop", "list"};
+        if (!arguments.empty() && std::find(names.begin(), names.end(), arguments[0]) == names.end())
+            return UnknownName("command", arguments[0], names);
+        arguments.push_back("--help");
+    }
 
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
     if (!parsed) return parsed.GetError();
     command.help = parsed.Value();
     if (!command.help.empty()) return command;
 
-    if (run->parsed()) {
+    if (wantsVersion) {
+        command.kind = CommandKind::Version;
+    } else if (run->parsed()) {
         command.kind = CommandKind::Run;
         if (sceneName.empty())
             return Error{ErrorCode::OutOfRange, "run needs a scene's name, for example: ./fulcrum run pyramid"};

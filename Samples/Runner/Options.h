@@ -1,4 +1,5 @@
-// The command line options of `fulcrum run`, `drop` and `list`. Read by Main.cpp; pure function of the arguments.
+// The command line options of `fulcrum run`, `drop`, `list`, `help` and `--version`. Read by Main.cpp; pure function of
+// the arguments.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -23,14 +24,16 @@ struct RunOptions {
     SolverSettings solver;
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     bool recordHtml = true, recordGlb = true;
-    std::filesystem::path json;  // empty: none
+    std::filesystem::path json;         // empty: none
+    std::filesystem::path out = "out";  // folder of what is recorded
+    bool isQuiet = false;               // nothing is said but what goes wrong
     uint64_t seed = 1;
 
     // --steps, else --seconds over dt rounded up, else the scene's own duration at this dt.
     int StepsOf(const Scene& scene) const;
 };
 
-enum class CommandKind { Help, List, Run, Drop };
+enum class CommandKind { Help, Version, List, Run, Drop };
 
 struct Command {
     CommandKind kind = CommandKind::Help;

@@ -26,10 +26,6 @@ constexpr size_t kMostEditedTriangles = 500'000;
 
 constexpr uint8_t kGone = 2;  // of settled_: removed, and recorded as such
 
-Vector3 ToVector(const Position& position, const Position& origin) {
-    return Vector3((position - origin).cast<float>());
-}
-
 RecordedShape RecordedHull(const ConvexHull& hull) {
     RecordedShape shape;
     shape.kind = RecordedShapeKind::Hull;
@@ -72,6 +68,7 @@ RecordedShape RecordedTriangles(const SurfaceShape& source) {
     source.VisitTriangles(source.LocalBounds(), [&](uint32_t id) {
         const TriangleView view = source.GetTriangle(id);
         std::array<uint32_t, 3> corners;
+        if (!source.Materials().empty()) shape.looks.push_back(view.material);
         for (size_t i = 0; i < 3; ++i) {
             const auto [at, isNew] = known.emplace(view.vertexIds[i], static_cast<uint32_t>(shape.vertices.size()));
             if (isNew) shape.vertices.push_back(view.vertices[i]);
@@ -153,6 +150,7 @@ Recorder::Recorder(SceneWorld& world, int steps, double dt) : world_(world), ste
     world.System().VisitBodies([&](BodyId id) {
         if (world.Bodies().GetMotionType(id) == MotionType::Dynamic && world.Bodies().IsAwake(id)) ++moving;
     });
+    NoteView();
     AddNewBodies();
     joints_.emplace(world.System(), recording.origin, [this](BodyId id) { return RecordedBodyOf(id); });
     const double forRate = 1 / (kFramesPerSecond * dt), forSize = moving * steps / kMostStates;
@@ -161,11 +159,12 @@ Recorder::Recorder(SceneWorld& world, int steps, double dt) : world_(world), ste
 }
 
 void Recorder::AfterStep() {
+    NoteStep();
     const int step = world_.StepCount();
     if (step % interval_ == 0 || step == steps_) AddFrame();
 }
 
-uint32_t Recorder::RecordShape(const ShapePtr& shape) {
+uint32_t Recorder::RecordShape(const ShapePtr& shape, BodyId user) {
     const uint64_t fingerprint = FingerprintOf(*shape);
     const auto known = shapes_.find(shape.get());
     if (known != shapes_.end() && known->second.fingerprint == fingerprint) return known->second.index;
@@ -173,9 +172,10 @@ uint32_t Recorder::RecordShape(const ShapePtr& shape) {
     if (const auto* compound = dynamic_cast<const CompoundShape*>(shape.get())) {
         recorded.kind = RecordedShapeKind::Compound;
         for (const CompoundShape::ChildSettings& child : compound->Settings())
-            recorded.children.push_back({RecordShape(child.shape), {child.position, child.rotation}});
+            recorded.children.push_back({RecordShape(child.shape, user), {child.position, child.rotation}});
     } else {
         recorded = RecordedPrimitive(*shape);
+        PutLooks(user, recorded);
     }
     const uint32_t index = static_cast<uint32_t>(recording.shapes.size());
     recording.shapes.push_back(std::move(recorded));
@@ -209,12 +209,13 @@ void Recorder::AddRecordedBody(BodyId id, ChildId child, const ShapePtr& shape) 
     children_.push_back(child);
     settled_.push_back(0);
     islands_.push_back(-1);
-    shown_.push_back({shape.get(), RecordShape(shape)});
+    shown_.push_back({shape.get(), RecordShape(shape, id)});
     recording.bodies.push_back({.shape = shown_.back().index,
                                 .motion = MotionOf(world_.Bodies().GetMotionType(id)),
                                 .mass = world_.Bodies().GetMass(id),
                                 .name = {},
                                 .isSensor = world_.Bodies().IsSensor(id)});
+    NoteLooks(id, index);
 }
 
 bool Recorder::IsThere(uint32_t body) const {
@@ -256,11 +257,11 @@ void Recorder::AddFrame() {
         const bool awake = bodies.IsAwake(id);
         const Pose pose = PoseOf(body);
         const bool isMovedChild = children_[body] != ChildId{} && settled_[body] == 1 &&
-                                  ToVector(pose.position, recording.origin) != recording.latest[body].position;
+                                  PlaceFrom(pose.position, recording.origin) != recording.latest[body].position;
         if (settled_[body] == 1 && !awake && !isMovedChild) continue;
         settled_[body] = !awake && recording.bodies[body].motion != RecordedMotion::Kinematic;
         states_.push_back({.body = body,
-                           .position = ToVector(pose.position, recording.origin),
+                           .position = PlaceFrom(pose.position, recording.origin),
                            .rotation = pose.rotation,
                            .velocity = bodies.GetLinearVelocity(id),
                            .awake = awake,
@@ -269,8 +270,11 @@ void Recorder::AddFrame() {
     contacts_.clear();
     if (WantsContacts(recording)) CollectContacts();
     CollectDrawing();
+    CollectFigures();
     AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints), {lines_, points_},
-                shapeChanges_);
+                shapeChanges_, figures_);
+    figures_ = {};
+    stepsOfFigures_ = 0;
 }
 
 std::optional<uint32_t> Recorder::RecordedBodyOf(BodyId id) const {
@@ -294,7 +298,7 @@ void Recorder::CollectIslands() {
 void Recorder::CollectContacts() {
     world_.System().VisitContacts([&](const ContactView& contact) {
         for (const ContactView::Point& point : contact.points)
-            contacts_.push_back({.point = ToVector(point.position, recording.origin),
+            contacts_.push_back({.point = PlaceFrom(point.position, recording.origin),
                                  .normal = contact.normal,
                                  .separation = point.separation,
                                  .impulse = point.impulse,
@@ -306,7 +310,7 @@ void Recorder::CollectContacts() {
 void Recorder::CollectDrawing() {
     lines_.clear();
     points_.clear();
-    const auto place = [&](const Position& position) { return ToVector(position, recording.origin); };
+    const auto place = [&](const Position& position) { return PlaceFrom(position, recording.origin); };
     for (const DrawnLine& line : world_.Draw().Lines())
         lines_.push_back({place(line.from), place(line.to), static_cast<uint32_t>(line.ink)});
     for (const DrawnPoint& point : world_.Draw().Points())
@@ -324,7 +328,7 @@ void Recorder::CollectShapes() {
         const ShapePtr shape = ShapeOf(body);
         const bool isField = shape->Type() == ShapeType::HeightField;
         if (shape.get() == shown_[body].shape && !(isField && recordsEdits)) continue;
-        const uint32_t index = RecordShape(shape);
+        const uint32_t index = RecordShape(shape, ids_[body]);
         if (index == shown_[body].index) continue;
         if (isField) editedTriangles_ += recording.shapes[index].triangles.size();
         shown_[body] = {shape.get(), index};

@@ -11,6 +11,10 @@
 
 namespace fulcrum {
 
+inline Vector3 PlaceFrom(const Position& position, const Position& origin) {
+    return Vector3((position - origin).cast<float>());
+}
+
 class Recorder {
 public:
     // The first frame is the world as it is now. Frames are recorded at an interval of steps that gives at most 60 a
@@ -35,7 +39,8 @@ private:
         uint32_t index = 0;  // into recording.shapes
     };
 
-    uint32_t RecordShape(const ShapePtr& shape);
+    // The body that uses it says what its materials look like.
+    uint32_t RecordShape(const ShapePtr& shape, BodyId user);
     void AddNewBodies();
     void AddRecordedBody(BodyId id, ChildId child, const ShapePtr& shape);
     void CollectShapes();
@@ -46,6 +51,12 @@ private:
     void CollectIslands();
     void CollectContacts();
     void CollectDrawing();
+    // In RecorderFigures.cpp.
+    void NoteView();
+    void NoteLooks(BodyId id, uint32_t body);
+    void PutLooks(BodyId user, RecordedShape& shape) const;
+    void NoteStep();
+    void CollectFigures();
     std::optional<uint32_t> RecordedBodyOf(BodyId id) const;
 
     const SceneWorld& world_;
@@ -69,6 +80,8 @@ private:
     std::vector<RecordedPoint> points_;
     std::vector<RecordedShapeChange> shapeChanges_;
     std::optional<JointRecorder> joints_;
+    RecordedFigures figures_;  // of the steps since the last frame
+    int stepsOfFigures_ = 0;
 };
 
 }  // namespace fulcrum

@@ -1,5 +1,6 @@
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
 
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <thread>
@@ -32,6 +33,11 @@ std::string CompilerName() {
 #else
     return "unknown";
 #endif
+}
+
+std::string CommitText() {
+    const char* commit = std::getenv("FULCRUM_COMMIT");
+    return commit ? commit : "";
 }
 
 int CoreCount() { return static_cast<int>(std::thread::hardware_concurrency()); }

@@ -1,6 +1,8 @@
 #include <Fulcrum/Samples/Runner/RunReport.h>
 
+#include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/Samples/Runner/Options.h>
+#include <Fulcrum/Samples/Runner/RunEnvironment.h>
 #include <Fulcrum/Version.h>
 
 #include <nlohmann/json.hpp>
@@ -73,6 +75,32 @@ void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
 
 }  // namespace
 
+AccuracyVerdict VerdictOf(const Scene& scene, const RunFigures& figures) {
+    if (!scene.accuracy || !scene.accuracyRange || figures.steps != StepsIn(scene.steps / 60.0, figures.dt))
+        return AccuracyVerdict::Unknown;
+    const auto& [lowest, highest] = *scene.accuracyRange;
+    return figures.accuracy >= lowest && figures.accuracy <= highest ? AccuracyVerdict::Pass : AccuracyVerdict::Fail;
+}
+
+std::string AccuracyText(const Scene& scene, const RunFigures& figures) {
+    const std::string unit = *scene.accuracyUnit ? std::string(" ") + scene.accuracyUnit : "";
+    std::string text = Text("%.6g", figures.accuracy) + unit;
+    if (!scene.accuracyRange) {
+        text += ", no threshold";
+    } else {
+        const auto& [lowest, highest] = *scene.accuracyRange;
+        const std::string range = lowest == highest ? Text("%g", lowest) : Text("%g to %g", lowest, highest);
+        switch (VerdictOf(scene, figures)) {
+            case AccuracyVerdict::Pass: text += ", pass: " + range + unit + " is asked for"; break;
+            case AccuracyVerdict::Fail: text += ", FAIL: " + range + unit + " is asked for"; break;
+            case AccuracyVerdict::Unknown:
+                text += Text(", not judged: the threshold, %s%s, is for %.4g s, not %.4g s", range.c_str(),
+                             unit.c_str(), scene.steps / 60.0, figures.steps * figures.dt);
+        }
+    }
+    return text + " (" + scene.accuracyMeaning + ")";
+}
+
 std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figures, uint64_t seed) {
     std::vector<ReportLine> lines;
     const auto add = [&](const char* section, const char* label, std::string value) {
@@ -111,9 +139,10 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
             ? "none"
             : Text("%.3g of the inner radius, %.2f mm, %s at step %d", figures.overlap.relative,
                    1000 * figures.overlap.depth, figures.overlapPair.c_str(), figures.overlap.step));
-    add("Result", "energy", Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd));
+    add("Result", "energy",
+        Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd) + ", springs included");
     AddRest(figures, lines);
-    if (scene.accuracy) add("Result", "accuracy", Text("%.6g (%s)", figures.accuracy, scene.accuracyMeaning));
+    if (scene.accuracy) add("Result", "accuracy", AccuracyText(scene, figures));
     add("Result", "pose hash", HashText(figures.poseHash));
     AddRemarks(figures, lines);
     return lines;
@@ -199,6 +228,40 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
     if (!figures.accuracies.empty()) json["accuracy_of_runs"] = figures.accuracies;
     if (figures.queryCount > 0) json[figures.queryName + "_per_s"] = QueriesPerSecond(figures);
     if (figures.singleQueryNs > 0) json["single_query_ns"] = figures.singleQueryNs;
+    return json;
+}
+
+nlohmann::ordered_json RunDocument(const Scene& scene, const std::string& name, const RunFigures& figures,
+                                   uint64_t seed) {
+    using Json = nlohmann::ordered_json;
+    Json json{{"schema", kRunSchema},
+              {"program", "fulcrum-runner"},
+              {"version", FULCRUM_VERSION_STRING},
+              {"date", UtcNow()},
+              {"commit", CommitText().empty() ? Json() : Json(CommitText())},
+              {"machine", {{"cpu", CpuModel()}, {"cores", CoreCount()}}},
+              {"compiler", CompilerName()},
+              {"lanes", kLanes},
+              {"units",
+               {{"*_ms", "milliseconds of wall clock"},
+                {"*_ns", "nanoseconds of wall clock"},
+                {"*_m", "meters"},
+                {"*_m_s", "meters a second"},
+                {"*_j", "joules"},
+                {"*_s", "seconds"},
+                {"*_per_s", "a second of wall clock"},
+                {"*_bytes", "bytes"},
+                {"dt", "seconds"},
+                {"accuracy", "accuracy_unit"}}}};
+    json.update(ReportJson(name, figures, seed));
+    json["energy_at_start_j"] = figures.energyAtStart;
+    json["energy_at_end_j"] = figures.energyAtEnd;
+    json["accuracy_meaning"] = scene.accuracyMeaning;
+    json["accuracy_unit"] = scene.accuracyUnit;
+    json["accuracy_lowest"] = scene.accuracyRange ? Json(scene.accuracyRange->lowest) : Json();
+    json["accuracy_highest"] = scene.accuracyRange ? Json(scene.accuracyRange->highest) : Json();
+    const AccuracyVerdict verdict = VerdictOf(scene, figures);
+    json["accuracy_passed"] = verdict == AccuracyVerdict::Unknown ? Json() : Json(verdict == AccuracyVerdict::Pass);
     return json;
 }
 

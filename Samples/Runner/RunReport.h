@@ -17,6 +17,19 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
 // Lines of text with a heading for each section.
 std::string ReportText(const std::vector<ReportLine>& lines);
 
+// Whether the accuracy figure is where the scene says. Unknown: the scene has no threshold, or the run is shorter or
+// longer than the one that it is for.
+enum class AccuracyVerdict : uint8_t { Unknown, Pass, Fail };
+AccuracyVerdict VerdictOf(const Scene& scene, const RunFigures& figures);
+// "0.0069 m, pass: 0 to 0.02 m is asked for (largest distance ...)".
+std::string AccuracyText(const Scene& scene, const RunFigures& figures);
+
+// What a file of --json begins with: schema, program, version, date, commit, machine, compiler, lanes, units. All of
+// ReportJson follows, and the accuracy's meaning, unit, threshold and verdict.
+nlohmann::ordered_json RunDocument(const Scene& scene, const std::string& name, const RunFigures& figures,
+                                   uint64_t seed);
+inline constexpr int kRunSchema = 2;  // 1 had no head
+
 // One run with the field names that benchmarks of other engines use: scene threads bodies contacts contact_points steps
 // median_ms mean_ms p99_ms max_ms steps_per_s accuracy nonfinite hash; and the engine's own. The ms of a scene that
 // times a batch of queries are the batch's, and their number a second is there too (rays_per_s). What is not measured

@@ -1,5 +1,7 @@
 #include <Fulcrum/Samples/Runner/Simulation.h>
 
+#include <Fulcrum/Samples/Scenes/SpringEnergy.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -122,7 +124,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.threads = threads;
     figures.solver = world.System().Settings().solver;
     figures.narrowPhase = world.System().Settings().narrowPhase;
-    figures.energyAtStart = world.System().GetEnergy();
+    figures.energyAtStart = TotalEnergy(world.System());
 
     PenetrationMeter meter(world);
     std::optional<RestFigures> rest;
@@ -155,7 +157,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     TimeQueries(world, figures);
     figures.last = world.System().Report();
     CountBodies(world, figures);
-    figures.energyAtEnd = world.System().GetEnergy();
+    figures.energyAtEnd = TotalEnergy(world.System());
     figures.poseHash = world.System().HashPoses();
     figures.memoryBytes = world.System().MemoryUsed();
     figures.accuracy = world.Definition().accuracy ? world.Definition().accuracy(world) : 0;

@@ -51,7 +51,7 @@ struct RunFigures {
     std::string overlapPair;  // empty where nothing overlapped
     uint32_t largestContacts = 0;
     uint32_t libccdFailures = 0, libccdFallbacks = 0;  // of all steps
-    double energyAtStart = 0, energyAtEnd = 0;         // J
+    double energyAtStart = 0, energyAtEnd = 0;         // J, with that of springs
     uint64_t poseHash = 0;
     size_t memoryBytes = 0;
     std::optional<Drift> drift;            // at the end; null: the scene is not built to stand

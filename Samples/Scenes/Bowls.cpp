@@ -38,7 +38,8 @@ void Build(SceneWorld& world) {
     const ShapePtr bowl = Bowl(world), ball = world.SphereOf(0.2f), capsule = world.CapsuleOf(0.2f, 0.12f);
     for (size_t i = 0; i < kDamping.size(); ++i) {
         const Position center = BowlCenter(i);
-        world.Add({.shape = bowl, .motion = MotionType::Static, .position = center});
+        const BodyId id = world.Add({.shape = bowl, .motion = MotionType::Static, .position = center});
+        world.Show(id, {.label = LabelOf(kDamping[i]) + "/s", .look = Look::Wood});
         const auto addMoving = [&](const ShapePtr& shape, const Position& place) {
             world.watched.push_back(world.Add({.shape = shape,
                                                .position = center + place,
@@ -67,9 +68,12 @@ extern const Scene kScene{
     .description = "balls and capsules roll in four bowls, damped by 0, 0.1, 0.5 and 3 per second",
     .steps = 600,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0, 0.8f, 1}, .picture = 0.08},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "bodies outside their bowl",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::BowlsScene

@@ -10,8 +10,8 @@ namespace {
 constexpr float kSpeeds[] = {2, 3, 4, 5.5f, 6.5f, 8, 60, 200};  // m/s
 constexpr size_t kPanes = std::size(kSpeeds);
 constexpr float kBallMass = 1;             // kg
-constexpr float kStrength = 6;             // N s: a pane breaks where something presses harder in a step
-constexpr double kMetersPerImpulse = 0.1;  // of the lines that are drawn, per N s
+constexpr float kStrength = 6;             // N s: a pane breaks if the impulse of a contact in a step is larger
+constexpr double kMetersPerImpulse = 0.1;  // length of drawn lines per N s
 
 void Adjust(SystemSettings& settings) { settings.events.contacts = true; }
 
@@ -38,7 +38,7 @@ void Break(SceneWorld& world, BodyId pane) {
         world.Add({.shape = shard, .position = at + Position(0.4 * (i % 3 - 1), 0.4 * (i / 3 - 1), 0)});
 }
 
-// Balls that hit something fall; panes that were hit hard break.
+// Makes balls fall that hit something, and breaks panes that were hit hard.
 void React(SceneWorld& world, double) {
     const auto isPane = [&](BodyId id) {
         const auto end = world.watched.begin() + kPanes;
@@ -74,12 +74,15 @@ double Accuracy(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "breaking_glass",
     .description = "balls of 2 to 200 m/s hit panes, which break where the impulse is more than they stand",
+    .view = {.color = ColorMode::Plain, .picture = 0.35},
     .adjust = Adjust,
     .build = Build,
     .beforeStep = React,
     .afterStep = DrawImpulses,
     .accuracy = Accuracy,
     .accuracyMeaning = "panes that broke too early, or not at all",
+    .accuracyUnit = "panes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::BreakingGlassScene

@@ -38,9 +38,13 @@ extern const Scene kScene{
     .description = "a bridge of 24 planks on hinges, with boxes and balls dropped on it",
     .steps = 480,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.4f, 0.2f, 1}, .showsJoints = false},
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    // A gap of 7 mm was measured, under boxes that fall on planks of 10 kg.
+    .accuracyRange = {{0, 0.02}},
 };
 
 }  // namespace fulcrum::BridgeScene

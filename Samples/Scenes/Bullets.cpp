@@ -47,9 +47,16 @@ extern const Scene kScene{
     .name = "bullets",
     .description = "balls at 200 to 1000 m/s at walls of 1 and 10 cm, rods at 100 rad/s between posts of 6 cm",
     .steps = 240,
+    .view = {.color = ColorMode::Speed,
+             .from = {-0.5f, 0.45f, 1},
+             .lower = {-14, 0, -13},
+             .upper = {32, 4, 13},
+             .picture = 0.03},
     .build = Build,
     .accuracy = BallsBehindTheWalls,
     .accuracyMeaning = "balls behind the walls",
+    .accuracyUnit = "balls",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::BulletsScene

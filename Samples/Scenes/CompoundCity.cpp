@@ -145,14 +145,21 @@ double Accuracy(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "compound_city",
     .description =
-        "bodies fall on 3456 buildings, children of 24 compounds; a tower loses its, children of one that changes",
+        "bodies fall on 3456 buildings in 24 compounds; a tower, one mutable compound, loses its pieces one by one",
     .steps = 720,
     .usesSeed = true,
+    .view = {.color = ColorMode::Plain,
+             .from = {0.5f, 0.5f, 1},
+             .lower = {-11, 0, -11},
+             .upper = {11, 14, 11},
+             .picture = 0.6},
     .build = Build,
     .beforeStep = LoseAPiece,
     .accuracy = Accuracy,
     .accuracyMeaning =
         "pieces of the tower, bodies on its roof and bodies in the ground that are where they should not be",
+    .accuracyUnit = "pieces and bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::CompoundCityScene

@@ -40,9 +40,12 @@ extern const Scene kScene{
     .description = "clubs thrown about in cones of 0, 15, 45, 90, 150 and 180 degrees",
     .steps = 300,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest angle beyond a cone, rad",
+    .accuracyMeaning = "largest angle beyond a cone",
+    .accuracyUnit = "rad",
+    .accuracyRange = {{0, 0.001}},
 };
 
 }  // namespace fulcrum::ConeScene

@@ -23,9 +23,12 @@ extern const Scene kScene{
     .steps = 300,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .picture = 0.3},
     .build = Build,
     .accuracy = BodiesBelowTheMesh,
     .accuracyMeaning = "bodies more than 1 m below the lowest point of the mesh",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
     .accuracyTolerance = 0,
 };
 

@@ -61,9 +61,12 @@ extern const Scene kScene{
     .name = "convex_shapes",
     .description = "cylinders, cones, tapered capsules, plates and a user's egg stand, roll and fall",
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .lower = {-10, 0, -4.5}, .upper = {7, 3, 5}, .picture = 0.3},
     .build = Build,
     .accuracy = BodiesBelowTheFloor,
     .accuracyMeaning = "bodies that fell through the floor",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::ConvexShapesScene

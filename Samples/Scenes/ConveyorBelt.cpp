@@ -24,7 +24,7 @@ public:
         for (const Belt& belt : belts_) {
             if (belt.body != contact.bodyB) continue;
             change.MoveSurface(contact, belt.body, belt.velocity);
-            change.TurnSurface(contact, belt.body, belt.pivot, belt.turning);
+            change.RotateSurface(contact, belt.body, belt.pivot, belt.turning);
         }
     }
 
@@ -86,6 +86,10 @@ void Build(SceneWorld& world) {
     world.AddFloor(14, 14);
     std::vector<Belt> belts = AddLoop(world);
     belts.push_back(AddFeeder(world));
+    for (const Belt& belt : belts)
+        world.Show(
+            belt.body,
+            {.look = Look::Belt, .beltVelocity = belt.velocity, .beltTurning = belt.turning, .beltPivot = belt.pivot});
     world.Listen(std::make_unique<Belts>(belts));
     for (int i = 0; i < 6; ++i)
         for (double side : {1.0, -1.0}) AddGoods(world, {1.6 * i - 4, kTop + 0.3, side * kRadius}, {}, i);
@@ -113,9 +117,16 @@ extern const Scene kScene{
     .name = "conveyor_belt",
     .description = "boxes, cylinders and hulls ride round a loop of belts with two bends, fed by a belt that climbs",
     .steps = 1500,
+    .view = {.color = ColorMode::Plain,
+             .from = {0.35f, 0.75f, 1},
+             .lower = {-8.5, 0.5, -3.5},
+             .upper = {8.5, 2, 9},
+             .picture = 0.12},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "goods that do not ride on the loop",
+    .accuracyUnit = "goods",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::ConveyorBeltScene

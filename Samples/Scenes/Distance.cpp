@@ -47,9 +47,12 @@ extern const Scene kScene{
     .description = "distance joints: a rod, a rope, a spring that carries a weight, a ball kept between two distances",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest error of a length, m",
+    .accuracyMeaning = "largest error of a length",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::DistanceScene

@@ -46,9 +46,12 @@ extern const Scene kScene{
     .description = "a ball topples a curved row of 72 dominoes",
     .steps = 720,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.3f, 0.7f, 1}, .picture = 0.4},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "dominoes left standing",
+    .accuracyUnit = "dominoes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::DominoesScene

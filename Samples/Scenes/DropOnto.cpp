@@ -74,6 +74,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = BodiesBelowTheFloor,
     .accuracyMeaning = "bodies that fell through the floor",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::DropOntoScene

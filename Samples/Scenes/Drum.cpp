@@ -58,9 +58,17 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 300,
     .sleeping = false,
+    .view = {.color = ColorMode::Speed,
+             .from = {0.25f, 0.1f, 1},
+             .lower = {-18, 2, -10},
+             .upper = {18, 40, 10},
+             .picture = 0.75},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that went through the drum's wall",
+    .accuracyUnit = "boxes",
+    // A box in a corner of the paddles may be pressed through.
+    .accuracyRange = {{0, 1}},
     .accuracyTolerance = 1,
 };
 

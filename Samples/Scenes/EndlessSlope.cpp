@@ -56,9 +56,13 @@ double LargestError(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "endless_slope",
     .description = "balls roll down a half space that has no end, crates stay; swings hang from bodies without a shape",
+    .view = {.color = ColorMode::Plain, .from = {0.1f, 0.35f, 1}},
     .build = Build,
     .accuracy = LargestError,
-    .accuracyMeaning = "largest distance of a ball from where rolling takes it, m",
+    .accuracyMeaning = "largest distance of a ball from where rolling takes it",
+    .accuracyUnit = "m",
+    // Velocities lead by half a substep: a t h / 2, a = 5/7 g sin(10 degrees), t = 5 s, h = 1/240 s, make 12.7 mm.
+    .accuracyRange = {{0, 0.013}},
 };
 
 }  // namespace fulcrum::EndlessSlopeScene

@@ -41,9 +41,12 @@ extern const Scene kScene{
     .description = "126 bodies locked to the x-y plane pile up between two walls",
     .steps = 480,
     .usesSeed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.15f, 0.1f, 1}},
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest distance of a body's center from the plane, m",
+    .accuracyMeaning = "largest distance of a body's center from the plane",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 1e-06}},
 };
 
 }  // namespace fulcrum::FlatLandScene

@@ -35,6 +35,7 @@ void Build(SceneWorld& world) {
                        .position = StartOf(i),
                        .rotation = tilt,
                        .material = {.friction = kFriction[i], .frictionRule = CombineRule::Multiply}}));
+    for (size_t i = 0; i < kFriction.size(); ++i) world.Show(world.watched[i], {.label = LabelOf(kFriction[i])});
 }
 
 // A box that sticks has moved less than 1 cm; one that slides has covered the 1 m that even mu = 0.44 slides in 3 s.
@@ -55,9 +56,16 @@ extern const Scene kScene{
     .description = "nine boxes on a ramp of 25 degrees: those with a friction above its tangent, 0.466, stick",
     .steps = 300,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain,
+             .from = {0.75f, 0.6f, 1},
+             .lower = {-9, 1, -6},
+             .upper = {9, 9.5, 6},
+             .picture = 0.42},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that slide but should stick, or stick but should slide",
+    .accuracyUnit = "boxes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::FrictionRampScene

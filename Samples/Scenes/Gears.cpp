@@ -33,6 +33,11 @@ void Build(SceneWorld& world) {
         const Position place = center + Position(0, 0, height);
         const BodyId wheel =
             world.Add({.shape = WheelOf(world, kTeeth[i]), .position = place, .density = 500, .layer = 1});
+        // A wheel that is driven has a gap where its driver's tooth is, towards -x.
+        const double pitch = 2 * kPi / kTeeth[i];
+        world.Show(wheel, {.look = Look::Brass,
+                           .teeth = kTeeth[i],
+                           .toothAngle = i % 2 ? static_cast<float>(kPi + 0.5 * pitch) : 0.0f});
         world.watched.push_back(wheel);
         if (isOnTheSameAxle) {
             world.Join(JointOf<FixedJointSettings>(world.watched[i - 1], wheel, place));
@@ -58,8 +63,9 @@ double Accuracy(const SceneWorld& world) {
     for (size_t axle = 1; axle < world.joints.size(); ++axle) {
         const double before = world.Joints().GetCoordinate(world.joints[axle - 1], JointAxis::AngularX);
         const double after = world.Joints().GetCoordinate(world.joints[axle], JointAxis::AngularX);
-        worst = std::max(
-            worst, std::fabs(before * kTeeth[2 * axle - 2] + after * kTeeth[2 * axle - 1]) / kTeeth[2 * axle - 2]);
+        // Coordinates without limits may be off by whole turns, which are whole teeth.
+        const double off = before * kTeeth[2 * axle - 2] + after * kTeeth[2 * axle - 1];
+        worst = std::max(worst, std::fabs(std::remainder(off, 2 * kPi)) / kTeeth[2 * axle - 2]);
     }
     return worst;
 }
@@ -71,10 +77,13 @@ extern const Scene kScene{
     .description = "a clockwork of eight gears on five axles, 144 turns of the first for one of the last",
     .steps = 900,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain, .from = {0.12f, 0.1f, 1}, .picture = 0.3, .showsJoints = false},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "largest angle by which two gears are out of step, rad of the smaller one",
+    .accuracyUnit = "rad",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::GearsScene

@@ -18,10 +18,16 @@ void Build(SceneWorld& world) {
     const ShapePtr ball = world.SphereOf(0.4f);
     double x = -6.75;
     const auto nextPlace = [&x] { return Position(x += 1.5, kStart, 0); };
-    for (float factor : kFactors)
+    for (float factor : kFactors) {
         world.watched.push_back(world.Add({.shape = ball, .position = nextPlace(), .gravityFactor = factor}));
-    for (float damping : kDamping) world.Add({.shape = ball, .position = nextPlace(), .linearDamping = damping});
-    for (float limit : kSpeedLimits) world.Add({.shape = ball, .position = nextPlace(), .maxLinearSpeed = limit});
+        world.Show(world.watched.back(), {.label = LabelOf(factor) + " g"});
+    }
+    for (float damping : kDamping)
+        world.Show(world.Add({.shape = ball, .position = nextPlace(), .linearDamping = damping}),
+                   {.label = LabelOf(damping) + "/s"});
+    for (float limit : kSpeedLimits)
+        world.Show(world.Add({.shape = ball, .position = nextPlace(), .maxLinearSpeed = limit}),
+                   {.label = LabelOf(limit) + " m/s"});
 }
 
 // Before any has landed.
@@ -38,12 +44,16 @@ double Accuracy(const SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "gravity_factors",
-    .description = "ten balls fall from one height: gravity factors -0.2 to 1, dampings, speed limits",
+    .description = "ten balls fall from one height: gravity factors -0.2 to 1, dampings in 1/s, speed limits in m/s",
     .steps = 114,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain, .from = {0, 0.05f, 1}, .picture = 0.75},
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest error of a free ball's height against g t^2 / 2, m",
+    .accuracyMeaning = "largest error of a free ball's height against g t^2 / 2",
+    .accuracyUnit = "m",
+    // Velocities are floats: each of 114 steps rounds a speed of up to 19 m/s by up to 1e-6 of it, 2 s long: 0.1 mm.
+    .accuracyRange = {{0, 0.0001}},
 };
 
 }  // namespace fulcrum::GravityFactorsScene

@@ -43,10 +43,13 @@ extern const Scene kScene{
     .steps = 144,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0, 0.1f, 1}, .picture = 0.55, .showsJoints = false},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Stretch,
-    .accuracyMeaning = "stretch of the chain, % of its length",
+    .accuracyMeaning = "stretch of the chain, of its length",
+    .accuracyUnit = "%",
+    .accuracyRange = {{0, 0.1}},
 };
 
 }  // namespace fulcrum::HeavyChainScene

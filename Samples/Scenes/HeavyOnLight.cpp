@@ -39,9 +39,13 @@ extern const Scene kScene{
     .name = "heavy_on_light",
     .description = "a tonne on boxes of 10 kg: the stack stands where lower bodies are heavier for their contacts",
     .steps = 600,
+    .view = {.color = ColorMode::Plain, .from = {0.3f, 0.15f, 1}, .picture = 0.3},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of that stack's top box minus 9.5 m, that of a perfect stack",
+    .accuracyUnit = "m",
+    // Ten contacts of a millimeter each; the other stack is scattered on the floor.
+    .accuracyRange = {{-0.01, 0.001}},
 };
 
 }  // namespace fulcrum::HeavyOnLightScene

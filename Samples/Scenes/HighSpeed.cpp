@@ -70,10 +70,13 @@ extern const Scene kScene{
     .steps = 200,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Speed, .picture = 0.2},
     .adjust = NoGravity,
     .build = Build,
     .accuracy = EscapedBodies,
     .accuracyMeaning = "bodies outside the room",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
     .accuracyTolerance = 0,
 };
 

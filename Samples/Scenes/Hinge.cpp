@@ -66,11 +66,14 @@ extern const Scene kScene{
     .description = "doors on hinges: driven between limits, following a target, with friction, soft stops; a fan",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
     .accuracyMeaning =
         "worst of: driven door off its limit, rad; fan's change of speed, parts; rubbing door's speed, rad/s",
+    .accuracyUnit = "",
+    .accuracyRange = {{0, 0.001}},
 };
 
 }  // namespace fulcrum::HingeScene

@@ -51,9 +51,12 @@ extern const Scene kScene{
     .steps = 300,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .picture = 0.8},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "smallest height of a body's center minus 1.8 m, where negative",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-0.1, 0}},
     .accuracyTolerance = 0.02,
 };
 

@@ -35,10 +35,13 @@ extern const Scene kScene{
     .steps = 100,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Speed, .from = {0.3f, 0.1f, 1}, .picture = 1},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.02}},
     .accuracyTolerance = 0.002,
 };
 

@@ -20,9 +20,12 @@ extern const Scene kScene{
     .sleeping = false,
     .isBuiltToStand = true,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.25f, 0.15f, 1}},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 99.5 m, that of a perfect stack",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-1, 0.01}},
     .accuracyTolerance = 0.25,
 };
 

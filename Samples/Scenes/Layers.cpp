@@ -45,10 +45,13 @@ extern const Scene kScene{
     .name = "layers",
     .description = "a platform that catches cubes and lets balls of another layer fall through",
     .steps = 240,
+    .view = {.color = ColorMode::Plain, .picture = 0.3},
     .adjust = LetGhostsPass,
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "bodies on the wrong floor",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::LayersScene

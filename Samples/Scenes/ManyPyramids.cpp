@@ -28,6 +28,8 @@ extern const Scene kScene{
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "largest difference of a top box's height from 9.5 m",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-0.01, 0.01}},
     .accuracyTolerance = 0.002,
 };
 

@@ -24,9 +24,11 @@ extern const Scene kScene{
     .kind = SceneKind::Performance,
     .steps = 300,
     .isClosed = true,
+    .view = {.color = ColorMode::Awake, .lower = {-60, 0, -40}, .upper = {60, 4, 60}, .picture = 0.4},
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "longest step but the first, ms: what sleeps must cost nothing",
+    .accuracyMeaning = "longest step but the first: what sleeps must cost nothing",
+    .accuracyUnit = "ms",
 };
 
 }  // namespace fulcrum::MostlyAsleepScene

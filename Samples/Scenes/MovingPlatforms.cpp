@@ -9,7 +9,7 @@ namespace {
 
 enum Platform : size_t { kLift, kShuttle, kTurntable, kSweeper, kPlatforms };
 
-// Where the platforms are after `time` seconds; all begin at rest. Accelerations stay below what friction can pass on.
+// Where the platforms are after `time` seconds; all begin at rest. Accelerations are small enough for friction.
 Pose PlatformPose(size_t platform, double time) {
     switch (platform) {
         case kLift: return {Position(-6, 1.75 - 1.25 * Cos(2 * kPi * time / 4), 0), {}};
@@ -63,7 +63,7 @@ void Build(SceneWorld& world) {
     for (const Carried& carried : kCarried)
         world.watched.push_back(
             world.Add({.shape = cube, .position = PlatformPose(carried.platform, 0).position + carried.offset}));
-    // What the sweeper pushes about.
+    // Boxes that the sweeper pushes.
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 3; ++j)
             world.Add({.shape = (i + j) % 2 == 0 ? cube : ball, .position = {5.2 + 0.8 * i, 0.3, 0.8 + 0.8 * j}});
@@ -94,10 +94,15 @@ extern const Scene kScene{
     .name = "moving_platforms",
     .description = "a lift, a shuttle and a turntable carry boxes, a turning bar sweeps others away",
     .steps = 720,
+    .view = {.color = ColorMode::Plain, .lower = {-7, 0, -5}, .upper = {12, 5, 6}, .picture = 0.5},
     .build = Build,
     .beforeStep = MoveThePlatforms,
     .accuracy = Accuracy,
-    .accuracyMeaning = "farthest that a box slid on what carries it, m",
+    .accuracyMeaning = "farthest that a box slid on what carries it",
+    .accuracyUnit = "m",
+    // Friction makes velocities equal, and a step along the tangent of a turning disc leads outwards by (w dt)^2 r /
+    // 2.
+    .accuracyRange = {{0, 0.03}},
 };
 
 }  // namespace fulcrum::MovingPlatformsScene

@@ -31,10 +31,13 @@ extern const Scene kScene{
     .description = "doors on three hinges, the middle one of the first 1 cm out of line, each hit by a ball",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning =
         "largest distance between the two anchors of a joint, m; a third of a centimeter cannot be helped",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.01}},
 };
 
 }  // namespace fulcrum::OverconstrainedDoorScene

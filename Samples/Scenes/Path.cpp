@@ -70,10 +70,13 @@ extern const Scene kScene{
     .description = "cars that motors drive along a hilly track, and a bead that slides on it",
     .steps = 600,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .adjust = NoContacts,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest distance of a car or the bead from the track, m",
+    .accuracyMeaning = "largest distance of a car or the bead from the track",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.005}},
 };
 
 }  // namespace fulcrum::PathScene

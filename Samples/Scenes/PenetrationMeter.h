@@ -1,5 +1,5 @@
-// Penetration of the bodies of a scene, by their shapes and poses alone, independent of the engine's contacts. Used by
-// Simulation after each step, outside of what is timed; one thread.
+// Penetration of the bodies of a scene, computed from shapes and poses only, independent of the engine's contacts. Used
+// by Simulation after each step, outside of what is timed; one thread.
 //
 // The measure is the penetration depth of two bodies, over the inner radius of the smaller one (of the largest ball
 // that fits inside). 1 means that a ball inside one body has its center on the other's surface; beyond that it is

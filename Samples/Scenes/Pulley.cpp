@@ -57,10 +57,13 @@ extern const Scene kScene{
     .description = "a crane whose winch lifts a load by a block and tackle, and two weights on a rope over a pulley",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Wind,
     .accuracy = Accuracy,
-    .accuracyMeaning = "how much longer than it is a rope is stretched, m",
+    .accuracyMeaning = "largest length by which a rope is stretched",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::PulleyScene

@@ -32,9 +32,12 @@ extern const Scene kScene{
     .sleeping = false,
     .isBuiltToStand = true,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .picture = 0.3},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box minus 29 m, that of a perfect stack",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-0.01, 0.01}},
     .accuracyTolerance = 0.002,
 };
 

@@ -67,10 +67,13 @@ extern const Scene kScene{
     .name = "query_bounds",
     .description = "boxes, a ray and a box on its way ask the broad phase alone; red: what really overlaps",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,
     .accuracyMeaning = "hits that the broad phase did not name",
+    .accuracyUnit = "hits",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::QueryBoundsScene

@@ -60,10 +60,14 @@ extern const Scene kScene{
     .name = "query_closest",
     .description = "points, a box and a capsule over stirred bodies, each with a line to what is closest to it",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,
-    .accuracyMeaning = "largest difference to the distance that all bodies one by one give, m",
+    .accuracyMeaning = "largest difference to the distance that all bodies one by one give",
+    .accuracyUnit = "m",
+    // Both ways subtract floats of up to 12 m.
+    .accuracyRange = {{0, 5e-06}},
 };
 
 }  // namespace fulcrum::QueryClosestScene

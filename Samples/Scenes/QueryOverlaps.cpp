@@ -63,10 +63,13 @@ extern const Scene kScene{
     .name = "query_overlaps",
     .description = "shapes and a cloud of points drift through stirred bodies and mark what they overlap",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,
     .accuracyMeaning = "probes whose overlap and distance disagree",
+    .accuracyUnit = "probes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::QueryOverlapsScene

@@ -76,10 +76,13 @@ extern const Scene kScene{
     .description =
         "rays among stirred bodies: closest hits (blue), all hits (violet), any hit (a curtain, red where blocked)",
     .steps = 600,
+    .view = {.color = ColorMode::Plain},
     .build = AddQueryGround,
     .afterStep = Ask,
     .accuracy = FigureOf,
     .accuracyMeaning = "rays for which closest, all, any and batch disagree",
+    .accuracyUnit = "rays",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::QueryRaysScene

@@ -24,6 +24,7 @@ void Build(SceneWorld& world) {
         const Vector3 way = driven ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
         const BodyId frame = AddHook(world, center + Position(0, 0, -0.5));
         const BodyId pinion = world.Add({.shape = wheel, .position = center, .layer = 1});
+        world.Show(pinion, {.look = Look::Brass, .teeth = 20});
         const BodyId rack = world.Add({.shape = driven ? world.BoxOf(2.5f, 0.1f, 0.1f) : world.BoxOf(0.1f, 2.5f, 0.1f),
                                        .position = edge,
                                        .mass = 20,
@@ -53,7 +54,9 @@ double Accuracy(const SceneWorld& world) {
     for (size_t i = 0; i < world.joints.size(); i += 2) {
         const double angle = world.Joints().GetCoordinate(world.joints[i], JointAxis::AngularX);
         const double way = world.Joints().GetCoordinate(world.joints[i + 1], JointAxis::LinearX);
-        worst = std::max({worst, std::fabs(angle * kRadius - way), std::fabs(way) - double(kWay)});
+        // The angle may be off by whole turns: without limits and motor nobody counts them.
+        worst = std::max({worst, std::fabs(std::remainder(angle * kRadius - way, 2 * kPi * kRadius)),
+                          std::fabs(way) - double(kWay)});
     }
     return worst;
 }
@@ -65,11 +68,14 @@ extern const Scene kScene{
     .description = "a pinion drives its rack to and fro between stops; the weight of another rack spins its pinion",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain, .from = {0.15f, 0.15f, 1}, .picture = 0.2},
     .adjust = NoContacts,
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning = "how far a rack is from its pinion's angle times the radius, or beyond a stop, m",
+    .accuracyMeaning = "how far a rack is from its pinion's angle times the radius, or beyond a stop",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::RackAndPinionScene

@@ -69,12 +69,16 @@ double Accuracy(const SceneWorld& world) {
 
 extern const Scene kScene{
     .name = "ragdoll_drive",
-    .description = "three poses: by motors hung up and floating, by velocities, kinematically",
+    .description =
+        "four ragdolls take the same poses: by motors (one hung up, one floating), by velocities, kinematically",
     .steps = 300,
+    .view = {.color = ColorMode::Plain, .from = {0.35f, 0.2f, 1}, .showsJoints = false},
     .build = Build,
     .beforeStep = BeforeStep,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest angle between a joint's rotation and the pose's, degrees",
+    .accuracyMeaning = "largest angle between a joint's rotation and the pose's",
+    .accuracyUnit = "degrees",
+    .accuracyRange = {{0, 1}},
 };
 
 }  // namespace fulcrum::RagdollDriveScene

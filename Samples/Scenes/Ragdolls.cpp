@@ -28,9 +28,12 @@ extern const Scene kScene{
     .sleeping = false,
     .isClosed = true,
     .accuracyRuns = 8,
+    .view = {.color = ColorMode::Plain, .lower = {-14, 0, -10}, .upper = {9, 12, 10}, .picture = 0.6},
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.05}},
     .accuracyTolerance = 0.01,
 };
 

@@ -42,6 +42,7 @@ extern const Scene kScene{
     .steps = 120,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .picture = 0.3},
     .build = Build,
     .query = Cast,
     .queryCount = kRays,
@@ -49,6 +50,8 @@ extern const Scene kScene{
     .querySingly = CastSingly,
     .accuracy = Misses,
     .accuracyMeaning = "rays that hit nothing",
+    .accuracyUnit = "rays",
+    .accuracyRange = {{0, 0}},
     .accuracyTolerance = 0,
 };
 

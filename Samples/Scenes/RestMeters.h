@@ -1,6 +1,6 @@
-// Whether a scene comes to rest and stays there: how far bodies drift from where they were built, how fast they still
-// move, when all of them sleep, how much energy appears from nothing. By poses and energy alone, so that nothing that
-// moves bodies goes unseen. Used by Simulation after each step, outside of what is timed, and by tests; one thread.
+// Measures whether a scene comes to rest and stays there: drift of bodies from their initial positions, remaining
+// speed, time until all sleep, energy that appears from nothing. Computed from poses and energy only, so that every
+// kind of motion is seen. Used by Simulation after each step, outside of what is timed, and by tests; one thread.
 #pragma once
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
@@ -35,7 +35,7 @@ private:
 };
 
 // The largest speed of the awake dynamic bodies, m/s: of the corners of their local bounding boxes, from their poses
-// before and after a step, whatever their velocities are. A body that a scene sets elsewhere counts as one that moves.
+// before and after a step, whatever their velocities are. A body that a scene teleports counts as moving.
 class SpeedMeter {
 public:
     // From where the bodies are now.
@@ -60,8 +60,8 @@ private:
 };
 
 // Energy that appears from nothing: the largest rise of kinetic plus potential energy above its smallest value so far.
-// Meaningful where nothing but gravity drives the bodies, and none comes or goes; what is lost elsewhere in the same
-// step hides a gain. Only what is or was awake is looked at.
+// Meaningful where nothing but gravity drives the bodies, and none comes or goes; losses elsewhere in the same step
+// hide a gain. Only bodies that are or were awake are measured.
 class EnergyMeter {
 public:
     // Bodies have the gravityFactor 1.

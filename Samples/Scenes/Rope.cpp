@@ -5,7 +5,7 @@ namespace {
 
 constexpr int kLinks = 40;
 
-// A rope of capsules swings over a bar and back, with a box at its end.
+// A rope of capsules with a box at its end swings over a bar and back.
 void Build(SceneWorld& world) {
     world.AddFloor(12, 6);
     world.Add({.shape = world.CapsuleOf(1, 0.5f),
@@ -34,9 +34,12 @@ extern const Scene kScene{
     .steps = 480,
     .sleeping = false,
     .isClosed = true,
+    .view = {.color = ColorMode::Plain, .from = {0.35f, 0.1f, 1}, .picture = 0.25, .showsJoints = false},
     .build = Build,
     .accuracy = LargestJointGap,
-    .accuracyMeaning = "largest distance between the two anchors of a joint, m",
+    .accuracyMeaning = "largest distance between the two anchors of a joint",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::RopeScene

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Samples/Scenes/SceneView.h>
 
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,11 @@ class SceneWorld;
 enum class SceneKind : uint8_t {
     Performance,  // timed by the benchmark; its numbers are fixed
     Sample,       // shows a feature; its figure says whether the feature works
+};
+
+// Both ends are in it.
+struct AccuracyRange {
+    double lowest = 0, highest = 0;
 };
 
 struct Scene {
@@ -31,6 +37,7 @@ struct Scene {
     // Runs whose median is the accuracy figure of the benchmark, where one run is chance: the gravity of each is larger
     // than that of the one before by a millionth. The first is the one that is timed.
     int accuracyRuns = 1;
+    SceneView view{};
     // Other settings than the defaults; null: none.
     void (*adjust)(SystemSettings& settings) = nullptr;
     // Creates the bodies. A scene may add and remove bodies later; recordings show that.
@@ -49,6 +56,10 @@ struct Scene {
     // The accuracy figure of a run, after its last step, and its meaning. Null if the run computes it.
     double (*accuracy)(const SceneWorld& world) = nullptr;
     const char* accuracyMeaning = "";
+    const char* accuracyUnit = "";
+    // Where the figure must be after the scene's own duration at the default settings; null: there is no telling, as of
+    // wall clock.
+    std::optional<AccuracyRange> accuracyRange{};
     // By how much its magnitude may grow before the benchmark calls a run less accurate than its baseline; null: any
     // figure will do.
     std::optional<double> accuracyTolerance{};

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 
 namespace fulcrum {
 
@@ -110,6 +111,12 @@ void SceneWorld::AddWalls(float halfX, float halfZ, float height) {
         Add({.shape = alongZ, .motion = MotionType::Static, .position = {side * halfX, 0.5 * height, 0}});
         Add({.shape = alongX, .motion = MotionType::Static, .position = {0, 0.5 * height, side * halfZ}});
     }
+}
+
+std::string LabelOf(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
 }
 
 double LargestJointGap(const SceneWorld& world) {

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -71,6 +72,8 @@ public:
     double figure = 0;                                   // the figure, if the scene accumulates it over the steps
     std::vector<Ray> rays;                               // of a scene that times a batch of them, and their hits
     std::vector<WorldRayHit> rayHits;
+    std::vector<std::pair<BodyId, BodyLook>> looks;                  // what Show was given
+    std::vector<std::pair<BodyId, std::vector<Look>>> surfaceLooks;  // likewise
 
     // Shapes; null, and an error of Create, where the sizes are wrong.
     ShapePtr BoxOf(float halfX, float halfY, float halfZ);
@@ -93,6 +96,10 @@ public:
     }
     // Adds to `ragdolls`. An error of Create where the settings are wrong.
     void AddRagdoll(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion = {});
+    // What a recording shows of the body.
+    void Show(BodyId id, BodyLook look) { looks.emplace_back(id, std::move(look)); }
+    // The looks of the materials of a body's surface, by their index.
+    void ShowSurface(BodyId id, std::vector<Look> materials) { surfaceLooks.emplace_back(id, std::move(materials)); }
     // Sets the contact listener, which the world owns.
     void Listen(std::unique_ptr<ContactListener> listener);
     // Static box, its top at y = 0.
@@ -116,6 +123,9 @@ private:
     double lastMs_ = 0;
     double longestMs_ = 0;
 };
+
+// A number for a label: three digits at most, no zeros behind it.
+std::string LabelOf(double value);
 
 // Returns `figure`, which the scene accumulates.
 inline double FigureOf(const SceneWorld& world) { return world.figure; }

@@ -39,6 +39,7 @@ namespace fulcrum {
     scene(Thin)               \
     scene(EndlessSlope)       \
     scene(MovingPlatforms)    \
+    scene(Harbor)             \
     scene(ConveyorBelt)       \
     scene(Layers)             \
     scene(HeavyOnLight)       \

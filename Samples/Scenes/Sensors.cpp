@@ -87,10 +87,13 @@ extern const Scene kScene{
     .name = "sensors",
     .description =
         "a force field, a gate that takes balls away, a scanner that kicks sleepers, a thin target for bullets",
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = React,
     .accuracy = Accuracy,
     .accuracyMeaning = "crates not held up, balls and bullets not caught, sleepers not found",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::SensorsScene

@@ -70,10 +70,13 @@ extern const Scene kScene{
     .description = "joints of six axes: a stage driven in a circle, a table on springs, a box loose within limits",
     .steps = 480,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning = "stage off its circle, or the box beyond a limit, m",
+    .accuracyMeaning = "stage off its circle, or the box beyond a limit",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.002}},
 };
 
 }  // namespace fulcrum::SixDofScene

@@ -63,11 +63,13 @@ extern const Scene kScene{
     .description = "sliders: an elevator with freight, two carts on a slope of which friction holds one, a soft stop",
     .steps = 540,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning =
-        "how far the elevator, the cart that holds and the cart that slides are from where they belong, m",
+    .accuracyMeaning = "how far the elevator, the cart that holds and the cart that slides are from where they belong",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.001}},
 };
 
 }  // namespace fulcrum::SliderScene

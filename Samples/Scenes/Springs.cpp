@@ -20,6 +20,9 @@ void Build(SceneWorld& world) {
             const Position middle(static_cast<double>(i) - 2, 1.5, static_cast<double>(k) - 2),
                 place = middle + Position(0, kStart, 0);
             const BodyId weight = world.Add({.shape = cube, .position = place, .mass = 1.0f + static_cast<float>(k)});
+            // What a row has in common is written at its end.
+            if (k + 1 == kDampings.size()) world.Show(weight, {.label = LabelOf(kFrequencies[i]) + " Hz"});
+            else if (i == 0) world.Show(weight, {.label = "damping " + LabelOf(kDampings[k])});
             auto settings = JointOfTwo<SliderJointSettings>(AddHook(world, middle - Position(0, 1, 0)), weight, middle,
                                                             place, {0, 1, 0});
             settings.slide = Limited(0, 0, static_cast<float>(kFrequencies[i]), static_cast<float>(kDampings[k]));
@@ -52,10 +55,13 @@ extern const Scene kScene{
     .description = "a table of 25 weights on springs: five frequencies by five damping ratios",
     .steps = 150,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain, .from = {-0.25f, 0.75f, 1}, .picture = 0.05},
     .adjust = NoGravity,
     .build = Build,
     .accuracy = Accuracy,
-    .accuracyMeaning = "largest distance of a weight from where the continuous oscillator is, m",
+    .accuracyMeaning = "largest distance of a weight from where the continuous oscillator is",
+    .accuracyUnit = "m",
+    .accuracyRange = {{0, 0.005}},
 };
 
 }  // namespace fulcrum::SpringsScene

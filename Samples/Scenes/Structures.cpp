@@ -66,9 +66,12 @@ extern const Scene kScene{
     .steps = 600,
     .usesSeed = true,
     .isBuiltToStand = true,
+    .view = {.color = ColorMode::Plain, .from = {0.3f, 0.12f, 1}},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "height of the top box of the highest column minus 49.5 m, that of a perfect one",
+    .accuracyUnit = "m",
+    .accuracyRange = {{-0.02, 0.001}},
 };
 
 }  // namespace fulcrum::StructuresScene

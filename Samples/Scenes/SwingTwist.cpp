@@ -69,10 +69,13 @@ extern const Scene kScene{
     .description = "arms in shoulders: driven from pose to pose, falling in an ellipse and in a pyramid, braked",
     .steps = 540,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain},
     .build = Build,
     .beforeStep = Drive,
     .accuracy = Accuracy,
-    .accuracyMeaning = "driven arm off its pose (its weight alone: 0.01 or so), or a twist beyond its limit, rad",
+    .accuracyMeaning = "driven arm off its pose (its weight alone: 0.01 or so), or a twist beyond its limit",
+    .accuracyUnit = "rad",
+    .accuracyRange = {{0, 0.02}},
 };
 
 }  // namespace fulcrum::SwingTwistScene

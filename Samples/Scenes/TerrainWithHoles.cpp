@@ -51,6 +51,7 @@ void Build(SceneWorld& world) {
                                             .cells = cells,
                                             .materials = materials});
     world.watched.push_back(world.Add({.shape = field.Value(), .motion = MotionType::Static}));
+    world.ShowSurface(world.watched.back(), {Look::Grass, Look::Ice, Look::Rubber});
     world.AddFloor(kHalf + 8, kHalf + 8);
     world.AddWalls(kHalf + 6, kHalf + 6, 2);
     const std::array<ShapePtr, 4> shapes{world.SphereOf(0.3f), world.BoxOf(0.3f, 0.25f, 0.35f),
@@ -118,11 +119,14 @@ extern const Scene kScene{
     .description =
         "bodies roll down a height field of grass, ice and rubber into its holes; in the middle one opens after 5 s",
     .steps = 600,
+    .view = {.color = ColorMode::Plain, .from = {0.4f, 0.75f, 1}, .picture = 0.45},
     .build = Build,
     .beforeStep = OpenTheMiddle,
     .afterStep = Watch,
     .accuracy = FigureOf,
     .accuracyMeaning = "bodies that passed the surface where it is solid",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::TerrainWithHolesScene

@@ -43,9 +43,12 @@ extern const Scene kScene{
     .description = "40 rods of 8 m and 400 plates of 4 cm, 10 cm thick at most, fall on a wavy mesh and come to rest",
     .steps = 1500,
     .usesSeed = true,
+    .view = {.color = ColorMode::Plain, .lower = {-20, 0, -10}, .upper = {20, 4, 30}, .picture = 0.1},
     .build = Build,
     .accuracy = LostOrAwake,
     .accuracyMeaning = "bodies that fell through the ground or do not sleep yet",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::ThinScene

@@ -50,10 +50,13 @@ extern const Scene kScene{
     .name = "trap_door",
     .description = "two stacks sleep on pillars; one pillar vanishes: its stack wakes and falls, the other sleeps on",
     .steps = 360,
+    .view = {.color = ColorMode::Awake, .picture = 0.62},
     .build = Build,
     .beforeStep = RemoveThePillar,
     .accuracy = Accuracy,
     .accuracyMeaning = "boxes that should have fallen and did not, or should have slept on and did not",
+    .accuracyUnit = "boxes",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::TrapDoorScene

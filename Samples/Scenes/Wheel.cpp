@@ -58,10 +58,19 @@ extern const Scene kScene{
     .description = "a rig on four sprung wheels, steered by the front and driven by the rear ones, over sleepers",
     .steps = 540,
     .sleeping = false,
+    .view = {.color = ColorMode::Plain,
+             .from = {0.7f, 0.45f, 1},
+             .lower = {-4, 0, -2.5},
+             .upper = {4, 2, 2.5},
+             .picture = 0.3,
+             .showsJoints = false,
+             .follows = 0},
     .build = Build,
     .beforeStep = Steer,
     .accuracy = Accuracy,
-    .accuracyMeaning = "how far its speed is from that of its wheels, parts; 1 where it fell over",
+    .accuracyMeaning = "how far its speed is from that of its wheels; 1 where it fell over",
+    .accuracyUnit = "parts",
+    .accuracyRange = {{0, 0.02}},
 };
 
 }  // namespace fulcrum::WheelScene

@@ -75,7 +75,7 @@ void Build(SceneWorld& world) {
 
 void OpenTheGate(SceneWorld& world, double) {
     const BodyId gate = world.watched[0];
-    // In its own plane: an upward motion would push the ball up the ramp.
+    // In the ramp's plane: an upward motion would push the ball up the ramp.
     const Vector3 speed(static_cast<float>(6 * Sin(kSlope)), static_cast<float>(6 * Cos(kSlope)), 0);
     if (world.StepCount() == kGateOpens) (void)world.Bodies().SetVelocity(gate, speed, Vector3::Zero());
     if (world.StepCount() == kGateOpens + 30) (void)world.Bodies().SetVelocity(gate, Vector3::Zero(), Vector3::Zero());
@@ -88,10 +88,13 @@ extern const Scene kScene{
     .description = "a heap of balls, boxes, capsules, rocks and jacks, hit by a ball of 29 t",
     .steps = 600,
     .usesSeed = true,
+    .view = {.color = ColorMode::Plain, .lower = {-13, 0, -9}, .upper = {11, 7, 9}, .picture = 0.5},
     .build = Build,
     .beforeStep = OpenTheGate,
     .accuracy = BodiesBelowTheFloor,
     .accuracyMeaning = "bodies that fell through the floor",
+    .accuracyUnit = "bodies",
+    .accuracyRange = {{0, 0}},
 };
 
 }  // namespace fulcrum::WreckingPileScene

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Samples/Viewer/PageColumn.h>
 #include <Fulcrum/Samples/Viewer/PageDrawings.h>
+#include <Fulcrum/Samples/Viewer/PageFigures.h>
 #include <Fulcrum/Samples/Viewer/PageJoints.h>
 
 #include <nlohmann/json.hpp>
@@ -152,6 +153,7 @@ Json AsJson(const RecordedShape& shape) {
             Json vertices = Json::array();
             for (const Vector3& v : shape.vertices) vertices.push_back(AsJson(v));
             json.update({{"kind", "hull"}, {"vertices", vertices}, {"triangles", shape.triangles}});
+            if (!shape.looks.empty()) json["looks"] = shape.looks;
             break;
         }
         case RecordedShapeKind::Compound: {
@@ -183,6 +185,9 @@ Json Header(const Recording& recording, double positionStep) {
     header["impulseUnit"] = kImpulseUnit;
     header["joints"] = JointHeader(recording);
     header["drawings"] = DrawingHeader(recording, kDrawingSteps * positionStep);
+    header["figures"] = FigureNames(recording);
+    header["view"] = ViewHeader(recording.view);
+    header["looks"] = LookHeader(recording);
     header["contactInterval"] = recording.contactInterval;
     header["largestContactCut"] = recording.largestContactCut;
     Json times = Json::array(), contactFrames = Json::array(), shapeChanges = Json::array();
@@ -229,6 +234,7 @@ std::string EncodePageData(const Recording& recording) {
     columns.push_back(contacts.Bytes());
     for (std::string& column : JointColumns(recording)) columns.push_back(std::move(column));
     columns.push_back(DrawingColumn(recording, kDrawingSteps * positionStep));
+    columns.push_back(FigureColumn(recording));
 
     Json header = Header(recording, positionStep);
     for (const std::string& column : columns) header["columns"].push_back(column.size());

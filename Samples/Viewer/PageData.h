@@ -2,7 +2,7 @@
 // deflated as a whole. Called by HtmlWriter; Page/decode.js reads it.
 //
 //     u32 length of the header | header | states | positions | rotations | velocities | islands | contacts | joints |
-//     jointStates | jointErrors | drawings
+//     jointStates | jointErrors | drawings | figures
 //
 // All numbers of a column are varints (7 bits a byte, low bits first), signed ones in zigzag. A state is stored only
 // if its quantized value differs from the body's last one. Positions are predicted from the two states before,
@@ -17,6 +17,7 @@
 //   kImpulseSteps log2(1 + impulse / kImpulseUnit)
 // - joints, jointStates, jointErrors: see PageJoints.h
 // - drawings: see PageDrawings.h
+// - figures: see PageFigures.h
 //
 // A body exists from its first state on. header.bodies.sensors lists the sensors, header.shapeChanges a triple of
 // frame, body and shape for each change of a body's shape.

@@ -61,8 +61,10 @@ bool WantsContacts(const Recording& recording) { return recording.frames.size() 
 
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
                  std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints,
-                 const RecordedFrameDrawing& drawing, std::span<const RecordedShapeChange> shapes) {
+                 const RecordedFrameDrawing& drawing, std::span<const RecordedShapeChange> shapes,
+                 const RecordedFigures& figures) {
     RecordedFrame frame;
+    frame.figures = figures;
     frame.time = time;
     const size_t known = recording.latest.size();
     for (size_t i = known; i < recording.bodies.size(); ++i)
@@ -148,6 +150,9 @@ Status CheckRecording(const Recording& recording) {
             if (change.body >= recording.bodies.size()) return unknown("frame", i, "the body", change.body);
             if (change.shape >= recording.shapes.size()) return unknown("frame", i, "the shape", change.shape);
         }
+        if (const uint32_t body = std::max(frame.figures.deepestA, frame.figures.deepestB);
+            body > 0 && body >= recording.bodies.size())
+            return unknown("frame", i, "the body", body);
         for (const RecordedContact& contact : frame.contacts)
             if (const uint32_t body = std::max(contact.bodyA, contact.bodyB); body >= recording.bodies.size())
                 return unknown("frame", i, "the body", body);

@@ -6,6 +6,7 @@
 #include <Fulcrum/Math/Pose.h>
 #include <Fulcrum/Math/Result.h>
 #include <Fulcrum/Samples/Viewer/RecordedDrawing.h>
+#include <Fulcrum/Samples/Viewer/RecordedFigures.h>
 #include <Fulcrum/Samples/Viewer/RecordedJoint.h>
 
 #include <array>
@@ -34,6 +35,7 @@ struct RecordedShape {
     std::vector<Vector3> vertices;                   // hull
     std::vector<std::array<uint32_t, 3>> triangles;  // hull: counter-clockwise seen from outside
     std::vector<RecordedChild> children;             // compound
+    std::vector<uint8_t> looks;                      // hull: one a triangle, as RecordedLook::look; empty: all 0
 };
 
 enum class RecordedMotion : uint8_t { Static, Kinematic, Dynamic };
@@ -42,8 +44,9 @@ struct RecordedBody {
     uint32_t shape = 0;  // index into Recording::shapes
     RecordedMotion motion = RecordedMotion::Dynamic;
     float mass = 0;    // kg; counts for dynamic bodies only
-    std::string name;  // may be empty
+    std::string name;  // may be empty; the page writes it beside the body
     bool isSensor = false;
+    RecordedLook look{};
 };
 
 struct RecordedState {
@@ -79,6 +82,7 @@ struct RecordedFrame {
     std::vector<RecordedLine> lines;    // of this frame alone
     std::vector<RecordedPoint> points;  // likewise
     std::vector<RecordedShapeChange> shapes;
+    RecordedFigures figures;
 };
 
 // A line of the viewer's panel. Lines of one section are consecutive.
@@ -95,6 +99,9 @@ struct Recording {
     std::vector<RecordedJoint> joints;
     std::vector<RecordedFrame> frames;
     std::vector<ReportLine> report;
+    RecordedView view;
+    std::vector<std::string> stageNames;  // of RecordedFigures::stageMs
+    bool hasFigures = false;              // whether frames have them
 
     // Kept by AppendFrame.
     std::vector<RecordedState> latest;  // of every body
@@ -116,7 +123,8 @@ inline constexpr size_t kMostContactsPerFrame = 50'000;
 // Lines and points that are not finite are dropped.
 void AppendFrame(Recording& recording, double time, std::span<const RecordedState> states,
                  std::span<const RecordedContact> contacts, const RecordedFrameJoints& joints = {},
-                 const RecordedFrameDrawing& drawing = {}, std::span<const RecordedShapeChange> shapes = {});
+                 const RecordedFrameDrawing& drawing = {}, std::span<const RecordedShapeChange> shapes = {},
+                 const RecordedFigures& figures = {});
 
 // Frames from <= i < until, in which a body is there with one shape.
 struct RecordedPresence {

@@ -20,7 +20,7 @@ endfunction()
 # What users turn on, and no flag for any processor: the engine itself may be compiled for AVX2.
 set(strict "-Wall -Wextra -Wpedantic -Werror")
 
-# The topmost crate rests on two others: its center is 2.5 m up, less what the contacts give way.
+# The topmost crate rests on two others: its center is at 2.5 m, less the contacts' penetration.
 function(expect_pyramid)
   message("${output}")
   if(NOT output MATCHES "crate 6: height 2\\.(49|50) m")

@@ -18,7 +18,7 @@ public:
     void ModifyContact(const ContactView& contact, ContactChange& change) const override {
         if (contact.bodyA != body && contact.bodyB != body) return;
         change.MoveSurface(contact, body, velocity);
-        change.TurnSurface(contact, body, Position::Zero(), turning);
+        change.RotateSurface(contact, body, Position::Zero(), turning);
     }
 };
 

@@ -229,7 +229,7 @@ TEST(ModifyContact, IgnoresValuesOutOfRange) {
             for (float surface : {nan, infinite}) {
                 ContactChange wrong{friction, restitution};
                 wrong.surfaceVelocity = Vector3(surface, 0, 0);
-                wrong.surfaceTurn = Vector3(0, surface, 0);
+                wrong.surfaceAngularVelocity = Vector3(0, surface, 0);
                 EXPECT_EQ(slide(&wrong), expected) << friction << " " << restitution;
             }
 }
@@ -257,7 +257,7 @@ void AnswerByIds(const ContactView& contact, ContactChange& change) {
     if (sum % 3 == 0) change.friction = 0.1f * static_cast<float>(sum % 7);
     if (sum % 5 == 0) change.restitution = 0.3f;
     if (sum % 2 == 0) change.MoveSurface(contact, contact.bodyB, {0.5f, 0, 0.1f * place.x()});
-    if (sum % 11 == 0) change.TurnSurface(contact, contact.bodyA, Position::Zero(), {0, 0.4f, 0});
+    if (sum % 11 == 0) change.RotateSurface(contact, contact.bodyA, Position::Zero(), {0, 0.4f, 0});
     change.ignore = sum % 13 == 0 && place.y() > 0.5f;
 }
 
@@ -282,7 +282,7 @@ TEST(ListenerCost, ASettledStepAllocatesNothing) {
         // A turntable: all boxes circle for ever.
         listener.modify = [&](const ContactView& contact, ContactChange& change) {
             change.friction = 0.9f;
-            if (contact.bodyB == floor) change.TurnSurface(contact, floor, Position::Zero(), {0, 0.2f, 0});
+            if (contact.bodyB == floor) change.RotateSurface(contact, floor, Position::Zero(), {0, 0.2f, 0});
         };
         world.System().SetContactListener(&listener);
         world.Steps(300);

@@ -398,7 +398,7 @@ TEST(Continuous, ASurfaceOfWhichTheTurnIsNotFiniteStands) {
         float turn = 0;
         void ModifyContact(const ContactView&, ContactChange& change) const override {
             change.surfaceVelocity = Vector3(0, 30, 0);
-            change.surfaceTurn = Vector3(turn, 0, 0);
+            change.surfaceAngularVelocity = Vector3(turn, 0, 0);
         }
     };
     const auto shoot = [](const ContactListener* listener) {

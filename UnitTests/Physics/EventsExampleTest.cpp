@@ -19,7 +19,7 @@ struct Game {
     void PlayCrack(JointId, float) {}
 };
 
-// Breaks panes that are hit by more than 6 N s, plays sounds, and brings the picture up to date.
+// Breaks panes that are hit by more than 6 N s, plays sounds, and updates the picture.
 void AfterStep(PhysicsSystem& system, Game& game) {
     const StepEvents& events = system.Events();
     for (const ContactEvent& event : events.contacts) {

@@ -119,10 +119,11 @@ TEST(TimeStep, ATenthOfASecondKeepsAStack) {
     BodyId top;
     for (int i = 0; i < 4; ++i) top = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}});
     world.Run(10, 0.1);
-    // Substeps of h = 1/40 s bear springs of w = 2 pi 0.21 / h and no stiffer. A point bears a quarter of the load,
-    // with an effective mass of a quarter of its box: at a corner of a cube 1 / m + 2 (0.5 / (m / 6) 0.5) = 4 /
+    // Substeps of h = 1/40 s allow springs of at most w = 2 pi 0.21 / h. A point bears a quarter of the load, with an
+    // effective mass of a quarter of its box: at a corner of a cube 1 / m + 2 (0.5 / (m / 6) 0.5) = 4 /
     // m. So a contact of k boxes above it and itself is pressed by k g / w^2, twice that between two boxes: (4 + 2 (3 +
-    // 2 + 1)) g / w^2 = 56 mm, and a little more in a stack, where rows that are solved before give way to those after.
+    // 2 + 1)) g / w^2 = 56 mm, and a little more in a stack, where rows that are solved earlier are violated again by
+    // later ones.
     const double w = 2 * kPi * 40 * std::sqrt(2 / 45.0), sink = 16 * kGravity / (w * w);
     EXPECT_NEAR(world.PositionOf(top).y(), 3.5 - sink, 0.25 * sink);
 }

@@ -40,7 +40,7 @@ TEST(Stages, TogetherTakeTheTimeOfTheStep) {
 
 // The first column of the table of Docs/Step.md.
 TEST(Stages, AreInTheirOrderInTheDocs) {
-    std::ifstream page(std::string(FULCRUM_SOURCE_DIR) + "/Docs/Step.md");
+    std::ifstream page(FULCRUM_SOURCE_DIR "/Docs/Step.md");
     std::vector<std::string> names;
     for (std::string line; std::getline(page, line) && line.find("## ") != 0;)
         if (line.find("| ") == 0 && line.find("| ---") != 0) names.push_back(line.substr(2, line.find(" |") - 2));

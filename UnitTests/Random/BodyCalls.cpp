@@ -56,8 +56,10 @@ BodySettings RandomBody(Values& values) {
 }
 
 void Create(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
-    const Result<BodyId> id = twin.system->Bodies().Create(RandomBody(values));
+    const BodySettings settings = RandomBody(values);
+    const Result<BodyId> id = twin.system->Bodies().Create(settings);
     if (!Note(id, outcome)) return;
+    if (settings.lockedAxes != LockedAxes::None) twin.guided.push_back(id.Value());
     outcome.answer.Add(id.Value());
     twin.bodies[targets.bodyA] = id.Value();
 }
@@ -105,6 +107,26 @@ FULCRUM_BODY_CALL(SetMaterial, return bodies.SetMaterial(id, RandomMaterial(valu
 FULCRUM_BODY_CALL(SetCategoryAndMask, const uint32_t mask = values.Below(4);
                   return bodies.SetCategoryAndMask(id, values.Below(4), mask))
 FULCRUM_BODY_CALL(SetGravityFactor, return bodies.SetGravityFactor(id, values.Setting(-1, 2)))
+FULCRUM_BODY_CALL(SetGravity, std::optional<Vector3> gravity; if (values.Chance(0.6f)) gravity = values.Speeds(10);
+                  return bodies.SetGravity(id, gravity))
+FULCRUM_BODY_CALL(SetMotionType, return bodies.SetMotionType(id, values.One<MotionType>(3)))
+FULCRUM_BODY_CALL(SetMass, return bodies.SetMass(id, values.Mass()))
+FULCRUM_BODY_CALL(SetInertia, SymmetricMatrix3 inertia; inertia.xx = values.Mass(); inertia.yy = values.Mass();
+                  inertia.zz = values.Mass(); inertia.xy = values.Setting(-1, 1);
+                  return bodies.SetMass(id, values.Mass(), inertia))
+FULCRUM_BODY_CALL(SetLayer, return bodies.SetLayer(id, static_cast<uint8_t>(values.Below(values.IsOdd() ? 256 : 3))))
+FULCRUM_BODY_CALL(SetDamping, const float linear = values.Setting(0, 2);
+                  return bodies.SetDamping(id, linear, values.Setting(0, 2)))
+FULCRUM_BODY_CALL(SetLockedAxes, twin.guided.push_back(id);
+                  return bodies.SetLockedAxes(id, static_cast<LockedAxes>(values.Below(values.IsOdd() ? 256 : 64))))
+FULCRUM_BODY_CALL(SetMaxSpeeds, const float linear = values.Setting(0.1f, 100);
+                  return bodies.SetMaxSpeeds(id, linear, values.Setting(0.1f, 100)))
+FULCRUM_BODY_CALL(SetAllowSleep, return bodies.SetAllowSleep(id, values.Chance(0.7f)))
+FULCRUM_BODY_CALL(SetUserData, return bodies.SetUserData(id, values.Below(1000)))
+FULCRUM_BODY_CALL(AddSteadyForce, return bodies.AddForce(id, Vector3(0, 100, 0)))
+FULCRUM_BODY_CALL(AddRadialImpulse, RadialImpulse blast; blast.center = values.Place(2);
+                  blast.radius = values.Setting(0.1f, 5); blast.impulse = values.Setting(-50, 50);
+                  blast.falloff = values.One<RadialImpulse::Falloff>(2); return bodies.AddRadialImpulse(blast))
 FULCRUM_BODY_CALL(SetContinuous, return bodies.SetContinuous(id, values.One<ContinuousCollision>(3)))
 FULCRUM_BODY_CALL(SetReportsContacts, return bodies.SetReportsContacts(id, values.Chance(0.7f)))
 FULCRUM_BODY_CALL(SetSensor, return bodies.SetSensor(id, values.Chance(0.4f)))
@@ -128,6 +150,16 @@ FULCRUM_BODY_CALL(RemoveChild, const MassUpdate update = values.One<MassUpdate>(
                   return bodies.RemoveChild(id, {values.Below(4), values.Below(2)}, update))
 
 #undef FULCRUM_BODY_CALL
+
+void SetPoses(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
+    const BodyId ids[2] = {twin.bodies[targets.bodyA], twin.bodies[targets.bodyB]};
+    Pose poses[2];
+    for (Pose& pose : poses) {
+        pose.rotation = values.Rotation();
+        pose.position = values.Place(3);
+    }
+    Note(twin.system->Bodies().SetPoses(ids, poses), outcome);
+}
 
 // Two members of a group, which pass through each other or not.
 void SetGroup(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
@@ -154,6 +186,19 @@ constexpr CallKind kCalls[] = {
     {"SetCategoryAndMask", 0.5f, SetCategoryAndMask},
     {"SetGroup", 0.5f, SetGroup},
     {"SetGravityFactor", 0.5f, SetGravityFactor},
+    {"SetPoses", 1, SetPoses},
+    {"SetGravity", 0.5f, SetGravity},
+    {"SetMotionType", 1.5f, SetMotionType},
+    {"SetMass", 0.5f, SetMass},
+    {"SetInertia", 0.5f, SetInertia},
+    {"SetLayer", 0.5f, SetLayer},
+    {"SetDamping", 0.3f, SetDamping},
+    {"SetLockedAxes", 0.3f, SetLockedAxes},
+    {"SetMaxSpeeds", 0.3f, SetMaxSpeeds},
+    {"SetAllowSleep", 0.5f, SetAllowSleep},
+    {"SetUserData", 0.3f, SetUserData},
+    {"AddSteadyForce", 3, AddSteadyForce},
+    {"AddRadialImpulse", 0.5f, AddRadialImpulse},
     {"SetContinuous", 1, SetContinuous},
     {"SetReportsContacts", 0.5f, SetReportsContacts},
     {"SetSensor", 1, SetSensor},

@@ -62,6 +62,7 @@ MassOverride RandomMassOverride(Values& values) {
 void FillCommon(JointSettings& settings, const Twin& twin, Values& values, const CallTargets& targets) {
     settings.bodyA = twin.bodies[targets.bodyA];
     settings.bodyB = twin.bodies[targets.bodyB];
+    if (values.Chance(0.15f)) settings.bodyA = kWorldBody;
     const bool inBody = values.Chance(0.5f);
     settings.space = inBody ? JointSpace::Body : JointSpace::World;
     if (values.IsOdd()) settings.space = values.One<JointSpace>(2);
@@ -163,6 +164,17 @@ void Create(Twin& twin, Values& values, const CallTargets& targets, Outcome& out
     twin.joints[targets.joint] = id.Value();
 }
 
+void CreateTarget(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
+    TargetJointSettings settings;
+    settings.body = twin.bodies[targets.bodyA];
+    settings.anchor = values.Place(2);
+    settings.target = values.Place(3);
+    if (values.Chance(0.5f)) settings.spring = RandomSpring(values);
+    if (values.Chance(0.5f)) settings.maxForce = values.Setting(0, 1e4f);
+    const Result<JointId> id = twin.system->Joints().CreateTarget(settings);
+    if (Note(id, outcome)) twin.joints[targets.joint] = id.Value();
+}
+
 // Statements, the last of which returns what the call returned.
 #define FULCRUM_JOINT_CALL(name, ...)                                                                      \
     void name(Twin& twin, [[maybe_unused]] Values& values, const CallTargets& targets, Outcome& outcome) { \
@@ -184,6 +196,7 @@ FULCRUM_JOINT_CALL(SetTargetOrientation, return joints.SetTargetOrientation(id, 
 FULCRUM_JOINT_CALL(SetEffort, return joints.SetEffort(id, {static_cast<int>(values.Below(70)),
                                                            static_cast<int>(values.Below(5)), 1}))
 
+FULCRUM_JOINT_CALL(SetTarget, return joints.SetTarget(id, values.Place(3)))
 FULCRUM_JOINT_CALL(SetMassOverride, return joints.SetMassOverride(id, RandomMassOverride(values)))
 
 #undef FULCRUM_JOINT_CALL
@@ -200,6 +213,8 @@ constexpr CallKind kCalls[] = {
     {"SetTargetOrientation", 0.5f, SetTargetOrientation},
     {"SetEffort", 0.5f, SetEffort},
     {"SetMassOverride", 0.5f, SetMassOverride},
+    {"CreateTarget", 1, CreateTarget},
+    {"SetTarget", 2, SetTarget},
 };
 
 }  // namespace

@@ -150,6 +150,24 @@ void FindOverlaps(Twin& twin, Values& values, const CallTargets& targets, Outcom
     if (hits != others) Fail(outcome, "a body that is ignored changes what else overlaps");
 }
 
+void CollideShape(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
+    const ShapePtr shape = RandomConvex(values);
+    if (!shape) return;
+    const PlacedShape placed{shape.get(), {Aim(twin, values, targets), values.Rotation()}};
+    const float most = values.Chance(0.5f) ? 0 : values.Number(0, 1, true);
+    std::vector<WorldContact> contacts;
+    twin.system->Queries().CollideShape(placed, most, contacts);
+    for (const WorldContact& contact : contacts) {
+        outcome.answer.Add(contact.body);
+        if (contact.pointCount < 1 || contact.pointCount > 4 || !(std::fabs(Length(contact.normal) - 1) < 1e-3f))
+            Fail(outcome, "a contact without points, or whose normal is no direction");
+        for (const WorldContact::Point& point : contact.Points()) {
+            outcome.answer.Add(point.separation);
+            if (!(point.separation <= most)) Fail(outcome, "a contact point is farther apart than was asked for");
+        }
+    }
+}
+
 void FindClosest(Twin& twin, Values& values, const CallTargets& targets, Outcome& outcome) {
     const QueryInterface& queries = twin.system->Queries();
     const ShapePtr shape = RandomShape(values);
@@ -209,13 +227,10 @@ void AskAboutNothing(Twin& twin, Values& values, const CallTargets&, Outcome& ou
 }
 
 constexpr CallKind kCalls[] = {
-    {"CastRays", 5, CastRays},
-    {"CastShapes", 4, CastShapes},
-    {"FindOverlaps", 3, FindOverlaps},
-    {"FindClosest", 3, FindClosest},
-    {"FindByPoint", 1, FindByPoint},
-    {"FindByBounds", 1, FindByBounds},
-    {"AskAboutNothing", 0.3f, AskAboutNothing},
+    {"CastRays", 5, CastRays},         {"CastShapes", 4, CastShapes},
+    {"FindOverlaps", 3, FindOverlaps}, {"CollideShape", 2, CollideShape},
+    {"FindClosest", 3, FindClosest},   {"FindByPoint", 1, FindByPoint},
+    {"FindByBounds", 1, FindByBounds}, {"AskAboutNothing", 0.3f, AskAboutNothing},
 };
 
 }  // namespace

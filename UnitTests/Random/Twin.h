@@ -64,7 +64,8 @@ struct Twin {
     std::vector<BodyId> bodies;
     std::vector<JointId> joints;
     std::vector<std::optional<Ragdoll>> ragdolls;
-    double energyBudget = 0;  // J: what kinetic energy the calls so far account for, see Checks.h
+    std::vector<BodyId> guided;  // those with locked axes
+    bool scalesMasses = false;   // the contact listener overrides masses: bodies push as kinematic ones do
 };
 
 // Hash of all that a user can read of a world.

@@ -1,5 +1,7 @@
 #include <Fulcrum/UnitTests/Random/Calls.h>
 
+#include <Fulcrum/Physics/Fields/Fields.h>
+
 namespace fulcrum::testing {
 
 namespace {
@@ -72,6 +74,7 @@ class Belts final : public ContactListener {
     void ModifyContact(const ContactView& contact, ContactChange& change) const override {
         if (contact.bodyA.index % 3 == 0) change.surfaceVelocity = Vector3(1, 0, 0);
         if (contact.bodyA.index % 5 == 0) change.ignore = contact.normal.y() > 0;
+        if (contact.bodyA.index % 7 == 0) change.isSensor = contact.normal.x() > 0;
         if (contact.bodyA.index % 4 == 0) change.friction = 0;
         if (contact.bodyB.index % 4 == 0) change.restitution = 1;
     }
@@ -81,7 +84,7 @@ class Nonsense final : public ContactListener {
         change.friction = -3e38f;
         change.restitution = std::numeric_limits<float>::quiet_NaN();
         change.surfaceVelocity = Vector3(std::numeric_limits<float>::infinity(), 0, 0);
-        change.surfaceTurn = Vector3(0, std::numeric_limits<float>::quiet_NaN(), 0);
+        change.surfaceAngularVelocity = Vector3(0, std::numeric_limits<float>::quiet_NaN(), 0);
         change.massOverride = {.inverseMassScaleA = -1, .inverseMassScaleB = std::numeric_limits<float>::infinity()};
     }
 };
@@ -98,11 +101,21 @@ void SetContactListener(Twin& twin, Values& values, const CallTargets&, Outcome&
     static const Heavier kHeavier;
     static const Nonsense kNonsense;
     const ContactListener* const listeners[] = {nullptr, &kGhosts, &kBelts, &kHeavier, &kNonsense};
-    twin.system->SetContactListener(listeners[values.Below(values.Style().extremeSettings ? 5 : 4)]);
+    const ContactListener* const chosen = listeners[values.Below(values.Style().extremeSettings ? 5 : 4)];
+    twin.system->SetContactListener(chosen);
+    twin.scalesMasses = chosen == &kHeavier || chosen == &kNonsense;
+}
+
+void ApplyFields(Twin& twin, Values& values, const CallTargets&, Outcome& outcome) {
+    Fields fields;
+    fields.waters.push_back({.level = values.Setting(-2, 2), .drag = values.Setting(0, 10)});
+    fields.winds.push_back({.velocity = values.Speeds(20)});
+    Note(fields.Apply(*twin.system, 1.0 / 60), outcome);
 }
 
 constexpr CallKind kCalls[] = {
     {"Step", 40, Step},
+    {"ApplyFields", 2, ApplyFields},
     {"SetSettings", 2, SetSettings},
     {"SetContactListener", 1, SetContactListener},
 };

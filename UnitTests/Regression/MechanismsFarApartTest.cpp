@@ -121,10 +121,10 @@ TEST(MechanismsFarApart, RagdollFollowsAPart) {
             }
 }
 
-// Ragdolls that fall on each other from 15 m: joints that the fall tears open are pulled while the pile keeps them
-// centimeters apart. Moved without turning to the end, as from afar, limbs whirled by up to two turns a step, and
-// joints were 0.25 to 0.5 m open. One run is chance: of 64
-// whose gravity differs by 1e-6 the widest gap is 0.07 m in the median, and more than 0.15 m in one or two.
+// Ragdolls that fall on each other from 15 m: joints that the impact opens are pulled together while the pile keeps
+// them centimeters apart. When limbs were moved without rotation to the end, as distant ones are, they spun by up to
+// two revolutions a step, and joints were 0.25 to 0.5 m open. A single run is noisy: of 64 whose gravity differs by
+// 1e-6 the widest gap is 0.07 m in the median, and more than 0.15 m in one or two.
 double WidestGapOfRagdolls(float gravityFactor) {
     SceneInput input;
     input.solver.substeps = 64;

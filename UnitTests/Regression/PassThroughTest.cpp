@@ -1,6 +1,6 @@
 // Boxes passed through each other: a body had no contact with another that moved along with it until something stopped
-// one of the two; two crossing edges had a single point, about which the boxes turned into each other; and the softness
-// of a contact gave way under a heavy load faster than its push, which has a largest speed, could follow.
+// one of the two; two crossing edges had a single point, about which the boxes rotated into each other; and a soft
+// contact under a heavy load yielded faster than its push, whose speed is limited, could recover.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
@@ -201,8 +201,9 @@ TEST(PassThrough, TheMeterMeasuresOverlapsWithoutContacts) {
     EXPECT_NEAR(meter.Worst().relative, 0.5, 1e-3);
 }
 
-// A soft row gives way in proportion to its load: by D, which a small load tells. From a quarter d of the inner radius
-// on it gives way less, by c = 1 - (x / d - 1) of that at a depth x, so that x = c D, or x = 2 D / (1 + D / d).
+// A soft row yields in proportion to its load: by D, extrapolated from a small load. Beyond a depth d, a quarter of the
+// inner radius, it is stiffer: it yields by c = 1 - (x / d - 1) of that at a depth x, so that x = c D, or x = 2 D / (1
+// + D / d).
 TEST(PassThrough, ALightBallUnderAHeavyOneIsNotPressedIntoTheFloor) {
     const float radius = 0.05f;
     const auto depthUnder = [&](float weights) {

@@ -82,6 +82,21 @@ TEST(RunnerOptions, AreAllRead) {
     EXPECT_EQ(command.options.seed, UINT64_MAX);
 }
 
+TEST(RunnerOptions, SayWhereToAndWhetherToSpeak) {
+    const Command command = Parsed("run tower --out some/where --quiet"), usual = Parsed("run tower");
+    EXPECT_EQ(command.options.out, "some/where");
+    EXPECT_TRUE(command.options.isQuiet);
+    EXPECT_EQ(usual.options.out, "out");
+    EXPECT_FALSE(usual.options.isQuiet);
+}
+
+TEST(RunnerOptions, TellTheVersionAndHelpWithACommand) {
+    EXPECT_EQ(Parsed("--version").kind, CommandKind::Version);
+    EXPECT_EQ(Parsed("help run").help, Parsed("run --help").help);
+    EXPECT_EQ(Parsed("help").help, Parsed("--help").help);
+    ExpectComplaint("help rnu", "run");
+}
+
 TEST(RunnerOptions, NameTheNarrowPhase) {
     EXPECT_EQ(Parsed("run tower").options.narrowPhase, NarrowPhaseMethod::Automatic);
     EXPECT_EQ(Parsed("run tower --narrow-phase automatic").options.narrowPhase, NarrowPhaseMethod::Automatic);

@@ -7,6 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace fulcrum {
 namespace {
@@ -70,6 +74,59 @@ TEST(Simulation, ReportsForPeopleAndForPrograms) {
         EXPECT_TRUE(json.contains(field)) << field;
     EXPECT_EQ(json["hash"].get<std::string>(), HashText(world->System().HashPoses()));
     EXPECT_EQ(json["stages_ms"].size(), static_cast<size_t>(kStageCount));
+}
+
+// The figure of a scene whose figure a test sets, after a run of so many steps of 1/60 s; the scene's own is a second.
+double theFigure = 0;
+std::pair<AccuracyVerdict, std::string> Judged(double figure, int steps, std::optional<AccuracyRange> range) {
+    theFigure = figure;
+    Scene scene{.name = "judged", .description = "a scene", .steps = 60};
+    scene.build = [](SceneWorld& world) { world.AddFloor(1, 1); };
+    scene.accuracy = [](const SceneWorld&) { return theFigure; };
+    scene.accuracyMeaning = "what a test says";
+    scene.accuracyUnit = "m";
+    scene.accuracyRange = range;
+    const auto world = SceneWorld::Create(scene);
+    const auto run = Simulate(*world.Value(), 0, steps, 1.0 / 60, 1, [] {});
+    return {VerdictOf(scene, run.Value()), AccuracyText(scene, run.Value())};
+}
+
+TEST(Verdict, IsByTheThresholdOfTheScene) {
+    const AccuracyRange range{-0.5, 2};
+    const auto [good, goodText] = Judged(2, 60, range);
+    EXPECT_EQ(good, AccuracyVerdict::Pass);
+    EXPECT_EQ(goodText, "2 m, pass: -0.5 to 2 m is asked for (what a test says)");
+    const auto [bad, badText] = Judged(-0.51, 60, range);
+    EXPECT_EQ(bad, AccuracyVerdict::Fail);
+    EXPECT_EQ(badText, "-0.51 m, FAIL: -0.5 to 2 m is asked for (what a test says)");
+    EXPECT_EQ(Judged(std::numeric_limits<double>::quiet_NaN(), 60, range).first, AccuracyVerdict::Fail);
+}
+
+TEST(Verdict, IsNotGivenOfOtherRuns) {
+    const auto [verdict, text] = Judged(1000, 30, AccuracyRange{0, 2});
+    EXPECT_EQ(verdict, AccuracyVerdict::Unknown);
+    EXPECT_EQ(text, "1000 m, not judged: the threshold, 0 to 2 m, is for 1 s, not 0.5 s (what a test says)");
+    EXPECT_EQ(Judged(1000, 60, {}).first, AccuracyVerdict::Unknown);
+    EXPECT_EQ(Judged(1000, 60, {}).second, "1000 m, no threshold (what a test says)");
+}
+
+TEST(RunDocument, SaysOfWhatItIs) {
+    const auto world = Build("tower");
+    ASSERT_TRUE(world);
+    auto run = Simulate(*world, 0, 3, 1.0 / 60, 1, [] {});
+    ASSERT_TRUE(run);
+    run.Value().accuracy = std::numeric_limits<double>::quiet_NaN();
+    const std::string text = RunDocument(world->Definition(), "tower", run.Value(), 1).dump();
+    const auto json = nlohmann::json::parse(text);  // NaN is no JSON
+    for (const char* field : {"schema", "program", "version", "date", "commit", "machine", "compiler", "lanes", "units",
+                              "scene", "hash", "accuracy", "accuracy_unit", "accuracy_meaning", "accuracy_lowest"})
+        EXPECT_TRUE(json.contains(field)) << field;
+    EXPECT_EQ(json["schema"], kRunSchema);
+    EXPECT_TRUE(json["accuracy"].is_null());
+    EXPECT_TRUE(json["accuracy_passed"].is_null());
+    EXPECT_EQ(json["machine"]["cores"].is_number(), true);
+    // Every field of a quantity says its unit by its ending.
+    for (const auto& [name, value] : json["units"].items()) EXPECT_TRUE(value.is_string()) << name;
 }
 
 // A box that slides 4 / (2 mu g) = 0.408 m in 0.408 s and rests; another rests all the time.

@@ -73,7 +73,7 @@ TEST(ViewerPageData, ComesBackWithinItsSteps) {
     const double dt = 1.0 / 60;
     stack.AddFrames(240, dt);
     Decoded decoded = Split(EncodePageData(stack.Get()));
-    ASSERT_EQ(decoded.columns.size(), 10u);
+    ASSERT_EQ(decoded.columns.size(), 11u);
     Reader &states = decoded.columns[0], &positions = decoded.columns[1], &rotations = decoded.columns[2],
            &velocities = decoded.columns[3], &islands = decoded.columns[4];
     std::map<size_t, Tracked> bodies;

@@ -22,7 +22,7 @@ double SettlingTime(double e, double height, double low) {
 }
 
 // Dropped from 2 m: rises to e^2 h, with e = 1 never above 2 m; comes to rest after sqrt(2 h / g) (1 + e) / (1 - e),
-// measured where it last is 5 mm up.
+// measured at the last time that it is 5 mm above the ground.
 void Restitution(LabRun& run) {
     constexpr double kHeight = 2, kRadius = 0.2, kLow = 0.005;
     const double e = run.parameter;

@@ -1,4 +1,4 @@
-// Joints that cannot all hold, and joints made far outside their limits.
+// Contradictory joints, and joints created far outside their limits.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 #include <Fulcrum/Samples/Scenes/JointShorthands.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr Influences kJoints{.joints = true};
 
-// Watches a body for the given time: the way in the second half, of `size`, is what grows.
+// Observes a body for the given time: the error is its motion in the second half, relative to `size`.
 void WatchDispute(LabRun& run, LabWorld& world, BodyId body, double size) {
     const double seconds = run.Seconds(20, 6);
     double force = 0;
@@ -31,7 +31,7 @@ void WatchDispute(LabRun& run, LabWorld& world, BodyId body, double size) {
     run.Observe(end.y() / size);
 }
 
-// Two fixed joints of one body that want it half a meter apart.
+// Two fixed joints whose targets for one body are half a meter apart.
 void TwoFixed(LabRun& run) {
     LabWorld world(run);
     const BodyId hook = AddHook(world), box = world.Add({.shape = BoxOf(0.5, 0.5, 0.5), .position = {1, 0, 0}});
@@ -52,7 +52,7 @@ void Door(LabRun& run) {
     WatchDispute(run, world, door, 1);
 }
 
-// What is not in dispute has the same bits beside it as alone.
+// Bodies not involved are bit-identical with and without the conflict.
 void Others(LabRun& run) {
     LabWorld world(run);
     world.AddFloor();

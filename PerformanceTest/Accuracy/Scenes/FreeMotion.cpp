@@ -1,4 +1,4 @@
-// Bodies that nothing touches: flight and free rotation. The time step alone matters.
+// Bodies without contacts and joints: flight and free rotation. Only the time step matters.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 

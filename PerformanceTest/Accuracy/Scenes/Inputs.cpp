@@ -1,4 +1,4 @@
-// What cannot be done is refused with an error, and changes nothing. No setting of the solver matters here.
+// Invalid input is refused with an error and changes nothing. Solver settings do not matter here.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 
@@ -10,7 +10,7 @@ namespace {
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(),
                 kInfinity = std::numeric_limits<float>::infinity();
 
-// Counts how many of the cases turned out as they should.
+// Counts the cases with the expected result.
 struct Cases {
     void Expect(bool holds) {
         ++tried;
@@ -27,7 +27,7 @@ struct Cases {
 
 bool MakesHull(const std::vector<Vector3>& points) { return bool(ConvexHull::Create(points)); }
 
-// Hulls without volume and meshes of nothing are refused, copies and triangles without area are repaired.
+// Hulls without volume and empty meshes are refused, duplicates and triangles without area are repaired.
 void Degenerate(LabRun& run) {
     Cases cases;
     const std::vector<Vector3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -53,8 +53,8 @@ void Degenerate(LabRun& run) {
     cases.Report(run);
 }
 
-// NaN, infinite, zero and negative numbers in every kind of setting: an error each, and a stack elsewhere has the same
-// bits as one in a world that was never asked.
+// NaN, infinite, zero and negative numbers in every kind of setting: each gives an error, and a stack elsewhere is
+// bit-identical to one in a world without these calls.
 void BadInput(LabRun& run) {
     Cases cases;
     LabWorld world(run), untouched(run);

@@ -1,4 +1,4 @@
-// Much weight on little, tall stacks, small and large bodies: what stands, how deep it sinks.
+// Heavy bodies on light ones, tall stacks, small and large bodies: stability and penetration.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 

@@ -1,4 +1,4 @@
-// Bodies that are created in each other.
+// Bodies that are created inside each other.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr Influences kContacts{.contacts = true};
 
-// The fastest motion of bodies, by their ways: pushes move bodies without velocities.
+// The fastest motion of bodies, from their displacements: penetration recovery moves bodies without velocity.
 class MotionMeter {
 public:
     MotionMeter(LabWorld& world, std::vector<BodyId> bodies) : world_(world), bodies_(std::move(bodies)) {

@@ -1,4 +1,4 @@
-// Far from the origin, odd time steps, long runs.
+// Scenes far from the origin, unusual time steps, long runs.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 #include <Fulcrum/Samples/Scenes/JointShorthands.h>
@@ -97,7 +97,8 @@ void TimeStep(LabRun& run) {
     run.Observe(std::min(off, 10.0));
 }
 
-// 10^6 steps of a stack, a pendulum and a ball that rolls in a pit: no energy comes, rotations stay unit, memory stays.
+// 10^6 steps of a stack, a pendulum and a ball that rolls in a pit: no energy gain, rotations stay normalized, memory
+// stays constant.
 void Soak(LabRun& run) {
     LabWorld world(run);
     world.AddFloor();

@@ -1,4 +1,4 @@
-// What rests: how deep, and with which forces.
+// Resting bodies: penetration and contact forces.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 

@@ -1,21 +1,24 @@
 // All bodies as instanced meshes, one for each geometry, moving bodies, fixed ones and sensors apart. Those that move, come or go
 // come first in each mesh, so that a frame touches and uploads no more than what changes.
-import { Color, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, Sphere, Vector3 } from 'three';
+import { Color, InstancedBufferAttribute, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, Sphere, Vector3 } from 'three';
 import { SELECTED, colorOf } from './colors.js';
 import { Glass, SENSOR } from './glass.js';
 import { isAlwaysTheSame } from './presence.js';
-import { GeometryChoice, leavesOf } from './shapes.js';
-import { addGrid } from './stage.js';
+import { GeometryChoice, halfBounds, leavesOf } from './shapes.js';
+import { addBelts, addGrid, growSmall } from './shaders.js';
 
 const RESTING_WITH_SHADOW_AT_MOST = 30000;
+const BRASS = 4; // of the looks
+const UNTURNED = new Quaternion();
 
 export class Bodies {
   constructor(recording, timeline, stage) {
     this.recording = recording;
     this.timeline = timeline;
     this.selected = -1;
-    this.material = new MeshStandardMaterial({ vertexColors: true, roughness: 0.62, metalness: 0.02 });
-    this.fixedMaterial = addGrid(new MeshStandardMaterial({ vertexColors: true, roughness: 0.95 }), stage.grid);
+    this.material = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: 0.58, metalness: 0.02 }), stage.least);
+    this.brass = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: stage.isFine ? 0.32 : 0.45, metalness: stage.isFine ? 0.75 : 0.15, envMapIntensity: 1.6 }), stage.least);
+    this.fixedMaterial = addBelts(addGrid(new MeshStandardMaterial({ vertexColors: true, roughness: 0.95 }), stage.grid), stage.clock);
     this.drivenMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.7 });
     this.glass = new Glass(stage);
     this.meshes = this.#build();
@@ -59,7 +62,7 @@ export class Bodies {
   }
 
   #build() {
-    const { bodies, bodyCount, frameCount, shapes, movers, presences, isSensor } = this.recording;
+    const { bodies, bodyCount, frameCount, shapes, movers, presences, isSensor, lookOf } = this.recording;
     const isMover = new Uint8Array(bodyCount);
     for (const body of movers) isMover[body] = 1;
     for (let body = 0; body < bodyCount; ++body) if (!isAlwaysTheSame(presences[body], frameCount)) isMover[body] = 1;
@@ -77,11 +80,12 @@ export class Bodies {
           for (const leaf of leavesOfShape[presence.shape]) {
             const wanted = isSharp ? 'sharp' : 'bevelled';
             const known = choiceOf.get(leaf) ?? {};
-            const chosen = (known[wanted] ??= choice.of(leaf.shape, isSharp));
+            const look = lookOf.get(body);
+            const chosen = look?.teeth > 0 ? choice.of(leaf.shape, isSharp, look) : (known[wanted] ??= choice.of(leaf.shape, isSharp));
             choiceOf.set(leaf, known);
             const byKey = groups.get(chosen.key) ?? groups.set(chosen.key, new Map()).get(chosen.key);
             const group = byKey.get(motion) ?? byKey.set(motion, { motion, make: chosen.make, leaves: [], moving: 0 }).get(motion);
-            group.leaves.push({ body, presence, position: leaf.position, rotation: leaf.rotation, scale: chosen.scale });
+            group.leaves.push({ body, presence, shape: leaf.shape, position: leaf.position, rotation: leaf.rotation, scale: chosen.scale });
             group.moving += moving;
           }
         }
@@ -91,8 +95,11 @@ export class Bodies {
   }
 
   #addMesh(group) {
-    const material = [this.fixedMaterial, this.drivenMaterial, this.material, this.glass.material][group.motion];
+    const isBrass = group.motion === 2 && group.leaves.every(({ body }) => this.recording.lookOf.get(body)?.look === BRASS);
+    const material = isBrass ? this.brass : [this.fixedMaterial, this.drivenMaterial, this.material, this.glass.material][group.motion];
     const mesh = new InstancedMesh(group.make(), material, group.leaves.length);
+    if (group.motion === 2) mesh.geometry.setAttribute('halfSize', this.#halfSizes(group.leaves));
+    if (group.motion === 0) this.#setBelts(mesh.geometry, group.leaves);
     // Of very many bodies at rest, the shadows would cost as much as the bodies.
     group.castsShadow = group.motion !== SENSOR && (group.moving > 0 || group.leaves.length < RESTING_WITH_SHADOW_AT_MOST);
     mesh.castShadow = group.castsShadow;
@@ -102,6 +109,31 @@ export class Bodies {
     mesh.setColorAt(0, new Color());
     mesh.userData.leaves = group.leaves;
     return { ...group, mesh };
+  }
+
+  // Half the extents of each leaf along its own axes, so that a shader can widen what would be less than a pixel.
+  #halfSizes(leaves) {
+    const sizes = new InstancedBufferAttribute(new Float32Array(3 * leaves.length), 3), half = new Vector3();
+    leaves.forEach(({ shape }, i) => {
+      if (shape.kind === 'hull') {
+        half.setScalar(0);
+        for (const [x, y, z] of shape.vertices) half.max(new Vector3(Math.abs(x), Math.abs(y), Math.abs(z)));
+      } else halfBounds(shape, UNTURNED, half);
+      half.toArray(sizes.array, 3 * i);
+    });
+    return sizes;
+  }
+
+  #setBelts(geometry, leaves) {
+    const velocity = new InstancedBufferAttribute(new Float32Array(3 * leaves.length), 3);
+    const turning = new InstancedBufferAttribute(new Float32Array(3 * leaves.length), 3);
+    leaves.forEach(({ body }, i) => {
+      const look = this.recording.lookOf.get(body);
+      if (!look?.velocity) return;
+      velocity.array.set(look.velocity, 3 * i);
+      turning.array.set([look.pivot[0], look.pivot[2], look.turning[1]], 3 * i);
+    });
+    geometry.setAttribute('beltVelocity', velocity).setAttribute('beltTurning', turning);
   }
 
   #placeAll(andResting) {
@@ -126,7 +158,7 @@ export class Bodies {
   // Resting bodies need a color only when the mode or the selection changes.
   #colorAll(mode, top) {
     const color = new Color();
-    const state = `${mode} ${this.selected}`;
+    const state = `${mode} ${this.selected} ${this.theme}`;
     const andResting = state !== this.coloredFor;
     this.coloredFor = state;
     for (const { mesh, leaves, moving } of this.meshes) {

@@ -1,16 +1,22 @@
 // The colors of bodies, by what the user wants to see in them.
 import { Color } from 'three';
+import { lookColor } from './looks.js';
 
 const PLAIN = ['#6c9bd0', '#e2a35c', '#73b58a', '#c98aa8', '#9a8fd0'].map((hex) => new Color(hex));
 const ISLANDS = ['#4f8fd8', '#e8935a', '#58b07c', '#d66a6a', '#8d7bd0', '#dcb345', '#45b0b8', '#d07fb0']
   .map((hex) => new Color(hex));
 const SPEEDS = ['#86a3c8', '#4fa3cc', '#4fb890', '#dccb4c', '#f0963a', '#d63c2c'].map((hex) => new Color(hex));
 const ALONE = new Color('#aab2ba');
-const FIXED = new Color('#d3d9de');
-const DRIVEN = new Color('#9aa7b4');
+const FIXED = new Color('#d3d9de'), DRIVEN = new Color('#9aa7b4');
 const GLASS = new Color('#3aa7c2');
 const AWAKE = new Color('#f0ab6b');
 const ASLEEP = new Color('#7d93aa');
+const FIXED_OF = { light: '#d3d9de', dark: '#414a54' }, DRIVEN_OF = { light: '#9aa7b4', dark: '#6d7a88' };
+// Of what does not move by itself; colors of bodies that do are the same by day and night.
+export function setTheme(theme) {
+  FIXED.set(FIXED_OF[theme]);
+  DRIVEN.set(DRIVEN_OF[theme]);
+}
 export const SELECTED = new Color('#ff4d1c');
 
 // The same number for the same id, with neighboring ids far apart: the fractions of the golden ratio.
@@ -23,7 +29,7 @@ function ramp(colors, fraction, out) {
 }
 
 // Neighbors of one color are told apart by a little light.
-const shade = (color, body) => color.multiplyScalar(0.9 + 0.2 * scattered(body + 1));
+const shade = (color, body) => color.multiplyScalar(0.86 + 0.26 * scattered(body + 1));
 
 // The speed that the scale ends at: 99 % of the moving samples are slower.
 export function topSpeed({ samples }) {
@@ -55,7 +61,9 @@ export function colorOf(mode, timeline, body, top, out) {
   const { recording } = timeline;
   if (recording.isSensor[body]) return out.copy(GLASS);
   const motion = recording.bodies.motions[body];
-  if (motion === 0) return out.copy(FIXED);
+  const look = motion === 2 && mode !== 'plain' ? undefined : lookColor(recording, body, timeline.presence(body)?.shape ?? recording.bodies.shapes[body]);
+  if (look && mode !== 'speed') return out.copy(look);
+  if (motion === 0) return out.copy(look ?? FIXED);
   if (motion === 1 && mode !== 'speed') return out.copy(DRIVEN);
   return byMode[mode](timeline, body, recording, top, out);
 }

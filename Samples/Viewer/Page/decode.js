@@ -4,6 +4,7 @@
 // starts[b + 1], in the order of their frames. A body that rests has few of them however long the recording.
 
 import { decodeDrawings } from './decodeDrawings.js';
+import { decodeFigures } from './decodeFigures.js';
 import { decodeJoints } from './decodeJoints.js';
 import { presencesOf } from './presence.js';
 import { Reader } from './reader.js';
@@ -111,7 +112,9 @@ export function decode(bytes) {
   const contacts = decodeContacts(header, readers[5]);
   const { joints, jointErrors } = decodeJoints(header, readers.slice(6));
   const drawings = decodeDrawings(header, readers[9]);
-  const recording = { ...header, bodyCount, frameCount: header.times.length, samples, contacts, joints, jointErrors, drawings };
+  const figures = decodeFigures(header, readers[10]?.bytes ?? new Uint8Array());
+  const lookOf = new Map(header.looks ?? []);
+  const recording = { ...header, figures, lookOf, bodyCount, frameCount: header.times.length, samples, contacts, joints, jointErrors, drawings };
   const presences = presencesOf(recording);
   const movers = [];
   for (let body = 0; body < bodyCount; ++body) if (samples.starts[body + 1] - samples.starts[body] > 1) movers.push(body);

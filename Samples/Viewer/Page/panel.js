@@ -30,6 +30,7 @@ export function showTexts(recording) {
   element('contact-note').textContent = contactNote(recording);
   element('joints').hidden = recording.joints.length === 0;
   document.querySelector('#toggles input[value=joints]').parentElement.hidden = recording.joints.length === 0;
+  document.querySelector('#toggles input[value=labels]').parentElement.hidden = Object.keys(recording.bodies.names).length === 0;
   document.querySelector('#toggles input[value=drawings]').parentElement.hidden = recording.drawings.length === 0;
   element('joint-note').textContent = jointNote(recording.joints.length);
 }
@@ -62,6 +63,12 @@ export function showJoints({ count, enabled, distance, distanceJoint, angle, ang
 }
 
 const MOTIONS = ['static', 'kinematic', 'dynamic'];
+
+// "box 12", or the name that the scene gave it.
+export function nameOf({ bodies, shapes }, body) {
+  const shape = shapes[bodies.shapes[body]];
+  return `${shape.name || shape.kind} ${body}${bodies.names[body] ? ` (${bodies.names[body]})` : ''}`;
+}
 
 // What is known of a body at the timeline's moment; also what tests read.
 export function bodyInfo(recording, timeline, body) {

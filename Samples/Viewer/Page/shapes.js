@@ -2,6 +2,7 @@
 // (a compound has several) and a scale, so that spheres of any size share one geometry.
 import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, Quaternion, SphereGeometry, Vector3 } from 'three';
 import { RoundedBoxGeometry } from 'three/addons/geometries/RoundedBoxGeometry.js';
+import { gearGeometry, triangleColor } from './looks.js';
 
 const BEVELLED_BOXES_AT_MOST = 20000; // their edges catch the light, at nine times the triangles
 const BOX_GEOMETRIES_AT_MOST = 48;    // of more sizes than this, all boxes share one geometry, and have sharp edges
@@ -72,10 +73,14 @@ export function describe(shape) {
 }
 
 // Every other part of a round body is darker, so that one sees it turn.
-function paint(geometry, isRound) {
+function paint(geometry, isRound, looks) {
   const flat = geometry.index ? geometry.toNonIndexed() : geometry;
   const places = flat.attributes.position;
   const colors = new Float32Array(3 * places.count).fill(1);
+  looks?.forEach((look, triangle) => {
+    const { r, g, b } = triangleColor(look);
+    for (let corner = 0; corner < 3; ++corner) colors.set([r, g, b], 9 * triangle + 3 * corner);
+  });
   if (isRound) {
     for (let i = 0; i < places.count; i += 3) {
       const sum = (read) => read(i) + read(i + 1) + read(i + 2);
@@ -104,7 +109,12 @@ export class GeometryChoice {
     this.oneBox = leafCount > BEVELLED_BOXES_AT_MOST || shapes.filter((shape) => shape.kind === 'box').length > BOX_GEOMETRIES_AT_MOST;
   }
 
-  of(shape, isFixed) {
+  // `look`: of the body, where the scene gave it one.
+  of(shape, isFixed, look) {
+    if (look?.teeth > 0 && shape.kind === 'hull') {
+      const make = () => paint(gearGeometry(shape.vertices, look.teeth, look.phase ?? 0), false);
+      return { key: `gear ${look.teeth} ${look.phase} ${JSON.stringify(shape.vertices[0])}`, scale: [1, 1, 1], make };
+    }
     if (shape.kind === 'sphere') {
       const [across, down] = this.leafCount > FINE_SPHERES_AT_MOST ? [16, 10] : [32, 20];
       return { key: 'sphere', scale: [shape.radius, shape.radius, shape.radius], make: () => paint(new SphereGeometry(1, across, down), true) };
@@ -120,6 +130,6 @@ export class GeometryChoice {
       const bevel = 0.05 * Math.min(...size);
       return { key: `box ${size}`, scale: [1, 1, 1], make: () => paint(new RoundedBoxGeometry(...size, 1, bevel), false) };
     }
-    return { key: shape, scale: [1, 1, 1], make: () => paint(hullGeometry(shape), false) };
+    return { key: shape, scale: [1, 1, 1], make: () => paint(hullGeometry(shape), false, shape.looks) };
   }
 }

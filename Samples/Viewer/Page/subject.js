@@ -1,16 +1,22 @@
-// What the picture is about: the bodies that move, or those that could, or all, and what stands among them; without the few that
-// flew far away, or left the ground.
+// What the picture is about: what the scene says, or the bodies that move, or those that could, or all, and what stands among
+// them; without the few that flew far away, or left the ground. And where a ground without an end may be drawn.
 import { Quaternion, Vector3 } from 'three';
 import { includeLeaf, leavesOf, outerRadius } from './shapes.js';
 
-const MOMENTS = [0, 0.25, 0.5, 0.75, 1];
-const LEFT_OUT = 0.01; // of the bodies at either end of each axis
-const AMONG = 3;       // of the radius: what stands farther away from the middle is not meant
+const MOMENTS = [0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1];
+const STRAYS = 0.01;   // of the places at either end of each axis
+const FAR_STRAY = 0.4; // of the others' extent: strays nearer than this are shown
+const AMONG = 1.3;     // of the radius: what stands farther away from the middle is not meant
 
-function middle(values) {
-  const sorted = Float64Array.from(values).sort();
-  const cut = Math.floor(LEFT_OUT * sorted.length);
-  return [sorted[cut], sorted[sorted.length - 1 - cut]];
+// The range of values, without strays.
+function rangeOf(lower, upper) {
+  const low = Float64Array.from(lower).sort(), high = Float64Array.from(upper).sort();
+  const cut = Math.floor(STRAYS * low.length), last = high.length - 1;
+  const extent = high[last - cut] - low[cut];
+  return [
+    low[cut] - low[0] > FAR_STRAY * extent ? low[cut] : low[0],
+    high[last] - high[last - cut] > FAR_STRAY * extent ? high[last - cut] : high[last],
+  ];
 }
 
 // The box around all static bodies.
@@ -36,9 +42,7 @@ function keepOverGround(places, countAtStart, { lower, upper }) {
   return 2 * places.slice(0, countAtStart).filter(isOver).length > countAtStart ? over : places;
 }
 
-const rangesOf = (places) => [0, 1, 2].map((k) => (places.length > 0 ? middle(places.map((place) => place[k])) : [0, 0]));
-
-// { center, half, radius, lowest } in meters, and `typical`: the radius of a body of middle size.
+// { center, half, radius, lowest } in meters, `typical`: the radius of a body of middle size, and `from`, towards the camera.
 export function findSubject(recording, timeline) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
@@ -47,7 +51,7 @@ export function findSubject(recording, timeline) {
   const radii = recording.shapes.map((_, index) => outerRadius(recording.shapes, index));
   const sizes = bodies.map((body) => radii[shapes[body]]).sort((a, b) => a - b);
   const typical = sizes[sizes.length >> 1] ?? 1;
-  const placeOf = (body) => [...timeline.positions.subarray(3 * body, 3 * body + 3)];
+  const placeOf = (body) => [...timeline.positions.subarray(3 * body, 3 * body + 3), radii[shapes[body]]];
 
   const placesAt = (moment) => {
     timeline.seek(moment * timeline.lastFrame);
@@ -56,23 +60,43 @@ export function findSubject(recording, timeline) {
   const byMoment = MOMENTS.map(placesAt);
   timeline.seek(0);
   const places = keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
-  const frame = (ranges) => ({
-    center: ranges.map(([low, high]) => (low + high) / 2),
-    half: ranges.map(([low, high]) => (high - low) / 2),
-    radius: Math.hypot(...ranges.map(([low, high]) => (high - low) / 2)) + typical,
-  });
+  const rangesOf = (list) => [0, 1, 2].map((k) => (list.length > 0
+    ? rangeOf(list.map((place) => place[k] - place[3]), list.map((place) => place[k] + place[3])) : [0, 0]));
+  const frame = (ranges) => {
+    const half = ranges.map(([low, high]) => (high - low) / 2);
+    return { center: ranges.map(([low, high]) => (low + high) / 2), half, radius: Math.max(1e-3, Math.hypot(...half)) };
+  };
   const mobile = frame(rangesOf(places));
   const isAmong = (body) => radii[shapes[body]] < mobile.radius &&
-    Math.hypot(...placeOf(body).map((x, k) => x - mobile.center[k])) < AMONG * mobile.radius;
+    Math.hypot(...placeOf(body).slice(0, 3).map((x, k) => x - mobile.center[k])) < AMONG * mobile.radius;
   const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).map(placeOf);
-  const ranges = rangesOf(places.concat(standing));
-  return { ...frame(ranges), lowest: ranges[1][0] - typical, typical };
+  let ranges = rangesOf(places.concat(standing));
+  const { lower, upper, from } = recording.view ?? {};
+  if (lower) ranges = [0, 1, 2].map((k) => [lower[k], upper[k]]);
+  return { ...frame(ranges), lowest: ranges[1][0], typical, from };
 }
 
-// Whether a static body offers a floor to the subject.
-export function hasFloor(recording, subject) {
-  const { motions, shapes } = recording.bodies;
-  return motions.some((motion, body) => motion === 0 && !recording.isSensor[body] && outerRadius(recording.shapes, shapes[body]) > 0.8 * subject.radius);
+// The height of a ground without an end that contradicts nothing: that of a floor which nothing falls off, or, where nothing
+// static is below the subject, just under all that moves. Undefined where there is none.
+export function groundHeight(recording, timeline, subject) {
+  const { motions, shapes } = recording.bodies, { samples } = recording;
+  let lowestEver = Infinity;
+  motions.forEach((motion, body) => {
+    if (motion !== 2) return;
+    for (let i = samples.starts[body]; i < samples.starts[body + 1]; ++i) lowestEver = Math.min(lowestEver, samples.positions[3 * i + 1]);
+  });
+  let floor = -Infinity, hasGround = false;
+  motions.forEach((motion, body) => {
+    const shape = recording.shapes[shapes[body]];
+    if (motion !== 0 || recording.isSensor[body] || outerRadius(recording.shapes, shapes[body]) < 0.6 * subject.radius) return;
+    hasGround = true;
+    const turn = Math.abs(timeline.rotations[4 * body + 3]);
+    if (shape.kind === 'box' && turn > 0.99999 && Math.min(shape.halfExtents[0], shape.halfExtents[2]) > 0.3 * subject.radius)
+      floor = Math.max(floor, timeline.positions[3 * body + 1] + shape.halfExtents[1]);
+  });
+  if (floor > -Infinity) return lowestEver > floor - 0.5 * subject.typical ? floor - 2e-3 * subject.radius : undefined;
+  if (hasGround || lowestEver < subject.lowest - 0.3 * subject.radius) return undefined;
+  return subject.lowest - 0.02 * subject.radius;
 }
 
 // Whether what is fixed or driven stands around and above the subject, so that one would not see it: a roof, or what is high up.

@@ -1,5 +1,5 @@
 // The recording that the tests look at: FULCRUM_RECORDING names it without its ending, out/pyramid of the working folder
-// by default. `./fulcrum run pyramid` makes it. Those of the scenes hinge, query_rays and sensors are beside it.
+// by default. `./fulcrum run pyramid` makes it. Those of the scenes hinge, query_rays, sensors and springs are beside it.
 import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
 import { unpack } from '../Page/decode.js';
@@ -11,9 +11,10 @@ export const screenshot = `${stem}.png`;
 export const hingeHtml = join(dirname(stem), 'hinge.html');
 export const queryHtml = join(dirname(stem), 'query_rays.html');
 export const sensorsHtml = join(dirname(stem), 'sensors.html');
+export const springsHtml = join(dirname(stem), 'springs.html');
 
-for (const file of [html, glb, hingeHtml, queryHtml, sensorsHtml]) {
-  if (!existsSync(file)) throw new Error(`${file} is missing: run ./fulcrum run pyramid, hinge, query_rays and sensors, or name a recording in FULCRUM_RECORDING`);
+for (const file of [html, glb, hingeHtml, queryHtml, sensorsHtml, springsHtml]) {
+  if (!existsSync(file)) throw new Error(`${file} is missing: run ./fulcrum run pyramid, hinge, query_rays, sensors and springs, or name a recording in FULCRUM_RECORDING`);
 }
 
 export async function readRecording(page = html) {

@@ -217,7 +217,8 @@ void Momentum(const RandomContacts& contacts, uint32_t contact, Position& linear
 
 TEST(ContactBatch, KeepsLinearAndAngularMomentum) {
     RandomContacts contacts(64, false, 5);
-    // With restitution friction acts on both surfaces, where they will be as they meet, and not at one point of now.
+    // With restitution, friction acts at the points where the surfaces will meet, not at one common point of the
+    // present poses.
     for (ContactRecord& record : contacts.records) record.restitution = 0;
     for (uint32_t i = 0; i < 64; ++i) {
         Position linear, angular, linearAfter, angularAfter;
@@ -321,7 +322,7 @@ TEST(ContactBatch, SeparationsFollowTheDisplacements) {
 
 TEST(ContactSolveSettings, SoftenIsTheSoftConstraintOfTheSpring) {
     // k = m w^2, c = 2 m zeta w with m = 1: gamma = 1 / (h (c + h k)), beta = h k / (c + h k). The row's effective mass
-    // is 1 / (1 + gamma), the part of the impulse that it gives way by gamma / (1 + gamma), its push beta / h per
+    // is 1 / (1 + gamma), the part of the impulse that softness removes gamma / (1 + gamma), its push beta / h per
     // meter.
     const double f = 60, zeta = 10, h = 1.0 / 240, w = 2 * M_PI * f, k = w * w, c = 2 * zeta * w;
     const double gamma = 1 / (h * (c + h * k)), beta = h * k / (c + h * k);

@@ -57,11 +57,11 @@ Solved Solve(std::span<const JointCase> cases, uint32_t seed, const RandomJoints
             for (JointBatch<N>& batch : batches) RelaxJoints(batch, joints.Bodies(), settings);
         }
     }
-    for (JointBatch<N>& batch : batches) TurnJoints(batch, states);
+    for (JointBatch<N>& batch : batches) RotateJointImpulses(batch, states);
     settings.firstPass = true;
     for (JointBatch<N>& batch : batches) UpdateJoints(batch, joints.Bodies(), settings);
     for (JointBatch<N>& batch : batches) {
-        TurnJoints(batch, states);
+        RotateJointImpulses(batch, states);
         StoreJoints(batch, joints.records.data(), joints.typePointers.data(), states, settings.dt, 1.0f);
     }
     for (const JointType* type : joints.typePointers) solved.impulses.push_back(type->impulses);

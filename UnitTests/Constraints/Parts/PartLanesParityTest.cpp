@@ -29,6 +29,15 @@ struct Row {
     float bias, error, low, high, warmLambda;
 };
 
+template <int N>
+void SetLane(SpringConstants<Wide<N>>& lanes, int lane, const SpringConstants<float>& constants) {
+    lanes.squaredFrequency.Set(lane, constants.squaredFrequency);
+    lanes.decayRate.Set(lane, constants.decayRate);
+    lanes.stiffness.Set(lane, constants.stiffness);
+    lanes.damping.Set(lane, constants.damping);
+    lanes.form.Set(lane, constants.form);
+}
+
 // Hard rows and springs of every mode and form, tight and wide limits, bodies without mass.
 Row MakeRow(RandomPoses& random) {
     Row row{MakeBody(random), MakeBody(random), MakeFrame(random), {}, 0, 0, 0, 0, 0};

@@ -39,7 +39,8 @@ TEST(ChainEnergy, RodsOnBallJointsGainNone) {
     }
 }
 
-// The joints lie beside the axes of the links: under tons of tension these are whirled about, an inertia of 1 : 40.
+// The joints are off the axes of the links, whose inertia about these is 1/40 of the others: a tension of tons spins
+// them fast.
 TEST(ChainEnergy, LinksHungUpBesideTheirAxesUnderAHeavyLoad) {
     for (const double aside : {0.001, 0.01, 0.03}) {
         SystemSettings settings = NoSleep();

@@ -135,8 +135,8 @@ TEST_P(JointSpring, OfAHingeAtTheEndOfARodMovesItsWholeInertia) {
             HingeJointSettings settings{Between(hook, rod, {0, 0, 0}, {0, 0, 1})};
             if (isLimit) settings.angle = Limited(0.5, 0.5, spring);
             else settings.angle.motor = PositionMotor(0.5, spring);
-            // A swing at 5 Hz with hardly any damping is fast: the point that holds the end gives way a little, and
-            // takes energy.
+            // A swing at 5 Hz with hardly any damping is fast: the locked point at the end yields a little, which
+            // dissipates energy.
             const bool isFast = Frequency() > 2 && DampingRatio() < 0.1;
             ExpectOscillator(world, Join(world, settings), JointAxis::AngularX, 0.5, 0.01, isFast ? 0.15 : 0.01);
         }

@@ -51,8 +51,8 @@ TEST(KinematicBase, AHingeThatMovesAndTurnsCarriesItsLoad) {
     const JointId hinge = Join(world, HingeJointSettings{Between(carousel.base, load, {0.5, 0, 0}, {1, 0, 0})});
     for (int i = 0; i < 300; ++i) {
         carousel.Step();
-        // A ball at the end of a meter has a hundredth of the inertia about the hinge: point and axis give way to each
-        // other.
+        // A ball at the end of a 1 m arm has a hundredth of the inertia about the hinge: the rows of the point and of
+        // the axis disturb each other.
         ASSERT_LT(JointsOf(world).GetError(hinge).distance, 7e-3f) << "step " << i;
         ASSERT_LT(JointsOf(world).GetError(hinge).angle, 7e-3f) << "step " << i;
         // In the plane of the hinge the centrifugal force is w^2 x, smaller than g / l: hanging is stable and it stays

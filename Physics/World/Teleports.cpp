@@ -1,0 +1,111 @@
+#include <Fulcrum/Physics/World/Teleports.h>
+
+#include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/World/BodyColliders.h>
+#include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Waking.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace fulcrum {
+
+namespace {
+
+// Tells all joints of the body's mechanism, once between two steps.
+void NoteTeleport(WorldState& world, uint32_t body) {
+    constexpr float kSecondsOfTeleport = 5;  // in which a mechanism comes together, see Docs/Joints.md
+    JointStore& store = world.joints;
+    std::vector<uint32_t> bodies{body};
+    while (!bodies.empty()) {
+        const uint32_t from = bodies.back();
+        bodies.pop_back();
+        store.VisitOf(from, [&](uint32_t index) {
+            Joint& joint = store.joints[index];
+            if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
+            store.records[index].secondsOfTeleport = kSecondsOfTeleport;
+            const int other = 1 - joint.SideOf(from);
+            if (!joint.fixed[other]) bodies.push_back(joint.body[other]);
+        });
+    }
+}
+
+// Brings everything in line with a pose that the user set.
+void UpdatePlaced(WorldState& world, uint32_t body) {
+    if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
+    world.bodies.UpdateInertia(body);
+    VisitColliders(world, body, [&](uint32_t i) {
+        SetFatBounds(world.settings, world.bodies, world.colliders, i);
+        const Collider& collider = world.colliders.colliders[i];
+        world.colliders.TreeOf(collider).Update(i, collider.fat);
+        world.outsideFatBounds.Forget(i);
+    });
+    world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.step + 1);
+    RequeueColliders(world.bodies, world.colliders, body);
+}
+
+void WakeAround(WorldState& world, uint32_t body) {
+    if (world.bodies.dynamics[body].frozen) {
+        world.bodies.dynamics[body].frozen = false;
+        RecolorJointsOf(world.bodies, world.joints, world.coloring, body);
+    }
+    WakeBody(world, body);
+    WakeNeighbors(world, body);
+    WakeJoined(world, body);
+}
+
+// Of bodies, where they were.
+class PosesBefore {
+public:
+    PosesBefore(const BodyStore& bodies, std::span<const BodyPlace> places) : bodies_(bodies) {
+        for (const BodyPlace& place : places) before_.push_back({place.body, bodies.ExactCenterPoseOf(place.body)});
+        std::ranges::sort(before_, {}, &BodyPlace::body);
+    }
+    // Whether joints hold the body to one that was not moved, or to which it was not moved along with it.
+    bool IsTorn(const JointStore& joints, uint32_t body) const {
+        bool isTorn = false;
+        joints.VisitOf(body, [&](uint32_t index) {
+            const Joint& joint = joints.joints[index];
+            isTorn |= !MovedTogether(body, joint.body[1 - joint.SideOf(body)]);
+        });
+        return isTorn;
+    }
+
+private:
+    bool MovedTogether(uint32_t a, uint32_t b) const {
+        constexpr float kSame = 1e-4f;  // m and rad: more than rounding far out leaves, less than shows
+        const BodyPlace *beforeA = Find(a), *beforeB = Find(b);
+        if (!beforeA || !beforeB) return false;
+        const RelativePose then = Relative(beforeA->pose, beforeB->pose),
+                           now = Relative(bodies_.ExactCenterPoseOf(a), bodies_.ExactCenterPoseOf(b));
+        return Length(Vector3(now.position - then.position)) <= kSame &&
+               Length(RotationVectorOf<float>(now.rotation * then.rotation.Conjugate())) <= kSame;
+    }
+    const BodyPlace* Find(uint32_t body) const {
+        const auto found = std::ranges::lower_bound(before_, body, {}, &BodyPlace::body);
+        return found != before_.end() && found->body == body ? &*found : nullptr;
+    }
+
+    const BodyStore& bodies_;
+    std::vector<BodyPlace> before_;  // center frames
+};
+
+}  // namespace
+
+void Teleport(WorldState& world, std::span<const BodyPlace> places) {
+    for (const BodyPlace& place : places) WakeAround(world, place.body);
+    const PosesBefore before(world.bodies, places);
+    for (const auto& [body, pose] : places) {
+        const Vector3 center = world.bodies.cold[body].shape->Mass().centerOfMass;
+        world.bodies.SetCenterPose(body, {pose.position + Rotate(pose.rotation, center).cast<double>(), pose.rotation});
+    }
+    for (const BodyPlace& place : places) {
+        if (before.IsTorn(world.joints, place.body)) NoteTeleport(world, place.body);
+        UpdatePlaced(world, place.body);
+    }
+    for (const BodyPlace& place : places) WakeNeighbors(world, place.body);
+}
+
+}  // namespace fulcrum
