@@ -72,6 +72,7 @@ struct Need {
     float need = 0;
     uint32_t culprit = ~0u;  // the body with that contact or joint
     uint8_t stiffness = 0;   // minimum over the loaded contacts of the last step; 0: none
+    bool isStiff = false;    // whether it needs the stiffest springs, as gaps of joints do
 
     void Raise(float to, uint32_t body) {
         if (!(need < to)) return;
@@ -264,6 +265,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         if (!adaptsToGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
         const float need = ExcessOfLevel(gap.level);
         needs[root].Raise(need, body);
+        needs[root].isStiff = true;
         if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });
     if (AdaptsToLoads(step.settings))
@@ -271,12 +273,12 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     else if (!adaptsToGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
         if (!(needs[i].need > 1)) continue;
-        // Walls of large islands, and islands with more load than the greatest effort carries, are as stiff as their
-        // substeps allow; other islands under load half as stiff.
-        const float half = kLoadedSubstep * kLoadedSubstep;
-        float need = needs[i].need * (sizes[i] > mostLoaded ? 1 : half);
+        // Islands under load get springs half as stiff as the stiffest, unless the maximum effort does not suffice
+        // then.
+        const float softer = needs[i].isStiff || sizes[i] > mostLoaded ? 1 : kLoadedSubstep * kLoadedSubstep;
+        float need = needs[i].need * softer;
         const SolverSettings effort = EffortFor(need, step.settings);
-        efforts[i].longer = sizes[i] > mostLoaded ? 1 : std::sqrt(half / std::clamp(need, 1.0f, half));
+        efforts[i].longer = std::sqrt(softer / std::clamp(need, 1.0f, softer));
         RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;
         efforts[i].stiffness = needs[i].stiffness;

@@ -73,8 +73,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                          .stiffness = std::max<uint8_t>(stiffness, 1),
                          .forgets = step.number % kStepsToForget == 0};
     };
-    const auto gapScaleOf = [&](float springs, uint8_t stiffness) {
-        return GapScale{.perLevel = 1 / (LargestUnnotedGap(settings.accuracy) * springs * springs),
+    const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
+        return GapScale{.perLevel = 1 / (LargestUnnotedGap(settings.accuracy) * impulseScale * impulseScale),
                         .stiffness = std::max<uint8_t>(stiffness, 1),
                         .forgets = step.number % kStepsToForget == 0};
     };
@@ -93,9 +93,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
         const bool isFirst = &group == &layout.groups.front();
         if (!group.isLarge && !group.effort.IsAny()) continue;
         const float impulseScale = EffortOf(step, group).impulseScale;
-        const float springs = SpringsOf(group, impulseScale);
-        const SinkScale sink = sinkScaleOf(impulseScale, springs, group.stiffness);
-        const GapScale gap = gapScaleOf(springs, group.stiffness);
+        const SinkScale sink = sinkScaleOf(impulseScale, SpringsOf(group, impulseScale), group.stiffness);
+        const GapScale gap = gapScaleOf(impulseScale, group.stiffness);
         const bool isNoted = notesLarge || !group.isLarge;
         const StoreScale scale{step.dt, impulseScale, isNoted && notesSinks ? &sink : nullptr,
                                isNoted && notesGaps ? &gap : nullptr};
