@@ -277,6 +277,18 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
     return Done{};
 }
 
+Status BodyInterface::SetPenetrationTarget(BodyId id, float target) {
+    if (MaybeError error = CheckTarget("penetrationTarget", target)) return *error;
+    const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    if (!Exists(id)) return Unknown(id);
+    world_.bodies.SetPenetrationTarget(id.index, target);
+    // Loads are noted as parts of what they may be.
+    std::ranges::fill(world_.pairs.loads, LoadLevel{});
+    world_.coloring.Invalidate();
+    return Done{};
+}
+
 Status BodyInterface::SetReportsContacts(BodyId id, bool reportsContacts) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();

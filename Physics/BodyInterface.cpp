@@ -80,6 +80,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     cold.continuous = settings.continuous;
     world_.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
     cold.isSensor = settings.isSensor;
+    world_.bodies.SetPenetrationTarget(body, settings.penetrationTarget);
     if (settings.reportsContacts) world_.bodies.reportsContacts.Insert(body);
     FillDynamics(world_.bodies.dynamics[body], cold, settings);
     world_.bodies.SetRadii(body, *settings.shape);
@@ -119,6 +120,7 @@ Status BodyInterface::Remove(BodyId id) {
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
     world_.bodies.continuousCount -= cold.continuous != ContinuousCollision::Off;
+    world_.bodies.SetPenetrationTarget(body, 0);
     if (cold.isSensor) world_.sensors.Remove(id);
     VisitColliders(world_, body, [&](uint32_t i) {
         world_.colliders.TreeOf(world_.colliders.colliders[i]).Remove(i);
@@ -355,6 +357,9 @@ CollisionGroup BodyInterface::GetGroup(BodyId id) const {
     return Exists(id) ? world_.bodies.FilterOf(id.index).group : CollisionGroup{};
 }
 uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
+float BodyInterface::GetPenetrationTarget(BodyId id) const {
+    return Exists(id) ? world_.bodies.cold[id.index].penetrationTarget : 0;
+}
 bool BodyInterface::ReportsContacts(BodyId id) const {
     return Exists(id) && world_.bodies.reportsContacts.Contains(id.index);
 }

@@ -102,6 +102,8 @@ public:
     Status SetAllowSleep(BodyId id, bool allowSleep);  // false wakes the body
     Status SetContinuous(BodyId id,
                          ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
+    // How deep it may sink, see BodySettings; 0: as the system's. Errors also: NonFinite, Negative.
+    Status SetPenetrationTarget(BodyId id, float target);
     // Whether its contacts are reported as events, see EventSettings. If not, contacts reported so far get an end event
     // in the next step in which the body is awake.
     Status SetReportsContacts(BodyId id, bool reportsContacts);
@@ -167,6 +169,7 @@ public:
     uint64_t GetMask(BodyId id) const;
     CollisionGroup GetGroup(BodyId id) const;
     uint64_t GetUserData(BodyId id) const;
+    float GetPenetrationTarget(BodyId id) const;
     bool ReportsContacts(BodyId id) const;
     bool IsSensor(BodyId id) const;
     bool IsAwake(BodyId id) const;

@@ -150,6 +150,7 @@ Result<JointId> JointInterface::Add(const JointSettings& settings, std::unique_p
     joint.breakForce = s.breakForce;
     joint.breakTorque = s.breakTorque;
     joint.effort = ToLeastEffort({s.substeps, s.velocityIterations, s.positionIterations});
+    world_.joints.SetErrorTarget(index, s.errorTarget);
     joint.SetMassOverride(s.massOverride);
     joint.userData = s.userData;
     if (std::isfinite(s.breakForce) || std::isfinite(s.breakTorque)) world_.joints.breakable.Insert(index);
@@ -296,6 +297,17 @@ Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target
     return Done{};
 }
 
+Status JointInterface::SetErrorTarget(JointId id, float target) {
+    if (MaybeError error = CheckTarget("errorTarget", target)) return *error;
+    const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    if (!Exists(id)) return Unknown(id);
+    world_.joints.SetErrorTarget(id.index, target);
+    world_.joints.gaps[id.index] = {};
+    world_.coloring.Invalidate();
+    return Done{};
+}
+
 Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();
@@ -390,6 +402,9 @@ BodyId JointInterface::GetBodyA(JointId id) const {
 }
 BodyId JointInterface::GetBodyB(JointId id) const {
     return Exists(id) ? IdOf(world_, world_.joints.joints[id.index].body[1]) : BodyId{};
+}
+float JointInterface::GetErrorTarget(JointId id) const {
+    return Exists(id) ? world_.joints.joints[id.index].errorTarget : 0;
 }
 uint64_t JointInterface::GetUserData(JointId id) const {
     return Exists(id) ? world_.joints.joints[id.index].userData : 0;

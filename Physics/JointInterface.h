@@ -65,6 +65,8 @@ public:
     Status SetTargetOrientation(JointId id, const Quaternion& target);
     // Minimum solver effort of the joint's island, see JointSettings; 0: the system's. Errors also: OutOfRange.
     Status SetEffort(JointId id, const SolverSettings& effort);
+    // How far apart its anchors may be, m, see JointSettings; 0: as the system's. Errors also: NonFinite, Negative.
+    Status SetErrorTarget(JointId id, float target);
     // Mass scales of the bodies for this joint, see JointSettings. Errors also: NonFinite, OutOfRange.
     Status SetMassOverride(JointId id, const MassOverride& massOverride);
 
@@ -85,6 +87,7 @@ public:
     Pose GetFrameB(JointId id) const;
     BodyId GetBodyA(JointId id) const;
     BodyId GetBodyB(JointId id) const;
+    float GetErrorTarget(JointId id) const;
     uint64_t GetUserData(JointId id) const;
     MassOverride GetMassOverride(JointId id) const;  // none for an unknown id
     // The joint's type, for data that only this type has; null for an unknown id. Valid until the joint is removed.

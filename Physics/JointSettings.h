@@ -55,6 +55,8 @@ struct JointSettings {
     int substeps = 0;            // 0..64
     int velocityIterations = 0;  // 0..255
     int positionIterations = 0;  // 0..255
+    // m, >= 0, in place of AccuracyTarget::jointError: how far apart its anchors may be; 0: as that, infinite: anyhow.
+    float errorTarget = 0;
     // Mass scales of the two bodies in this joint. Joints connected to one with scales are not solved by the direct
     // tree solver.
     MassOverride massOverride{};

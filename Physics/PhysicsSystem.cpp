@@ -81,7 +81,8 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     // settings.
     world_->coloring.Invalidate();
     if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
-    if (settings.accuracy.jointError != target.jointError) std::ranges::fill(world_->joints.gaps, LoadLevel{});
+    if (settings.accuracy.jointError != target.jointError || settings.accuracy.drift != target.drift)
+        std::ranges::fill(world_->joints.gaps, LoadLevel{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     KeepForEvents(*world_);
     if (!settings.events.bodies) step_->events.bodies = {};
@@ -172,6 +173,11 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
         if (first[root] == ~0u) first[root] = count++;
         visit(bodies.IdOf(i), first[root]);
     }
+}
+
+void PhysicsSystem::VisitEfforts(FunctionRef<void(const IslandEffortReport&)> visit) const {
+    if (step_->report.islandsWithMoreEffort > 0)
+        fulcrum::VisitEfforts(world_->settings.solver, world_->bodies, step_->solver, visit);
 }
 
 double PhysicsSystem::GetEnergy() const {

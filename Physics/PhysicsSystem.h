@@ -93,6 +93,9 @@ public:
     // Calls visit(id, island) for each dynamic body; islands are numbered from 0 in the order of their smallest body
     // index. Computed by this call: for viewers and tests.
     void VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const;
+    // All islands that the last step solved with more than the settings' effort, of which the report lists four: what
+    // it was, and for whom. In a deterministic order.
+    void VisitEfforts(FunctionRef<void(const IslandEffortReport&)> visit) const;
     // Kinetic plus gravitational potential energy of the dynamic bodies, J; the potential is zero at the world's
     // origin.
     double GetEnergy() const;

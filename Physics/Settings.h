@@ -132,6 +132,9 @@ struct BodySettings {
     CollisionGroup group{};  // and only if the filter of their common group, if any, allows it
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
+    // In place of AccuracyTarget::penetration for the contacts of this body, > 0; 0: as that. Of two bodies that have
+    // one the lesser counts.
+    float penetrationTarget = 0;
     bool reportsContacts = true;                  // see EventSettings
     bool isSensor = false;                        // no contacts; reports bodies inside: PhysicsSystem::SensorEvents
     SensorSees sensorSees = SensorSees::Default;  // among those that layers, masks and groups allow
@@ -146,7 +149,8 @@ struct SleepSettings {
 };
 
 // Target accuracy of resting contacts and of joints: islands that need it get more substeps than the system's
-// (Docs/Step.md). Other islands do not cost more.
+// (Docs/Step.md). Other islands do not cost more. Bodies and joints may have targets of their own
+// (BodySettings::penetrationTarget, JointSettings::errorTarget).
 struct AccuracyTarget {
     // Allowed penetration at a contact, as a fraction of the smaller body's size (half an edge of a cube), > 0;
     // infinite: never more substeps. Slender islands, such as columns, get as many as keep them upright with a safety
@@ -155,6 +159,9 @@ struct AccuracyTarget {
     // m, > 0: allowed distance of a joint's anchors along locked directions; infinite: never more substeps for that.
     // Controlled by the measured error, with a delay of some tenths of a second.
     float jointError = std::numeric_limits<float>::infinity();
+    // m/s, > 0: how fast the anchors of a joint may part along what it locks as a step ends; infinite: no island has
+    // more substeps for that. Measured likewise.
+    float drift = std::numeric_limits<float>::infinity();
     int mostSubsteps = 64;  // 1..64
     // Whether islands of 768 constraints and more get additional substeps for all of this. If not, they get only those
     // that the weight on small bodies requires: few contacts of a large pile carry much, but all of them are solved
@@ -177,6 +184,7 @@ struct SystemSettings {
     AccuracyTarget accuracy{};
     SleepSettings sleep{};
     EventSettings events{};
+    bool measuresErrors = false;  // StepReport::errors; costs nothing where it is off, and changes no result
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
     // m, > 0, at most 1000: separation below which contact points are created before bodies touch; for small shapes a
     // quarter of the smaller outer radius.

@@ -17,6 +17,29 @@ struct IslandEffortReport {
     // The body that required it: the one that would exceed AccuracyTarget most, the lighter one of its contact; or a
     // body of a joint that asks for more effort, or of a loaded tree of joints.
     BodyId culprit;
+    uint32_t bodies = 0;  // dynamic ones in it
+};
+
+// What a step made of energy and momentum, summed in double. Measured where SystemSettings::measuresErrors asks for it;
+// depths and gaps are in every report. An island is what contacts, joints and hits of the step connect.
+struct StepErrors {
+    bool areMeasured = false;  // else all is zero
+    // J: by how much the mechanical energy of all awake dynamic bodies (kinetic, and potential in gravity) changed,
+    // less the work of applied forces and torques. Friction, impacts and damping take some away.
+    double energyChange = 0;
+    // J, >= 0: the largest rise of that energy in one island that nothing kinematic touches. Motors and springs of
+    // joints give it rightly; all else is an error.
+    double energyGain = 0;
+    BodyId mostGaining;  // of that island the body whose own energy rose most
+    // N s and N m s, >= 0: the largest change of momentum, and of angular momentum about the center of mass, in one
+    // island that nothing outside holds (nothing immovable, locked axes, damping, gears, pulleys), beyond what gravity
+    // and applied forces explain.
+    double momentumError = 0, angularMomentumError = 0;
+    BodyId momentumBody, angularMomentumBody;  // of these islands the body whose own changed most
+    // J, >= 0: kinetic energy of the velocities with which a substep moved bodies and which they do not keep, as those
+    // out of overlaps and gaps of joints: of each body in the substep with the most of it; their sum, and the largest.
+    double pushEnergy = 0, largestPushEnergy = 0;
+    BodyId mostPushed;
 };
 
 struct StepReport {
@@ -46,6 +69,7 @@ struct StepReport {
     uint32_t sweptBodies = 0, sweptHits = 0;     // continuous collision: bodies that were cast, and hits
     uint32_t sensorTests = 0, sensorEvents = 0;  // pairs of a sensor and a body whose shapes were tested; events
     uint32_t clampedBodies = 0;                  // bodies that were clamped to their speed limits
+    StepErrors errors;
 };
 
 }  // namespace fulcrum

@@ -57,6 +57,10 @@ static MaybeError CheckPositiveOrInfinite(const char* field, double value) {
     return value == std::numeric_limits<double>::infinity() ? std::nullopt : CheckPositive(field, value);
 }
 
+MaybeError CheckTarget(const char* field, double value) {
+    return value == std::numeric_limits<double>::infinity() ? std::nullopt : CheckNotNegative(field, value);
+}
+
 MaybeError CheckNotNegative(const char* field, double value) {
     if (MaybeError e = CheckFiniteNumber(field, value)) return e;
     if (value >= 0) return std::nullopt;
@@ -138,12 +142,12 @@ MaybeError Check(const BodySettings& s) {
         return e;
     if (!s.inertia.isZero(0) && !(s.inertia.minCoeff() > 0))
         return Error{ErrorCode::NonPositive, "inertia must be larger than 0 in all three components, or zero in all"};
-    if (MaybeError e = FirstOf(Check(s.material), CheckNotNegative("linearDamping", s.linearDamping),
-                               CheckNotNegative("angularDamping", s.angularDamping),
-                               CheckRange("gravityFactor", s.gravityFactor, -1e6, 1e6),
-                               CheckPositive("maxLinearSpeed", s.maxLinearSpeed),
-                               CheckPositive("maxAngularSpeed", s.maxAngularSpeed), CheckRange("layer", s.layer, 0, 31),
-                               CheckRange("lockedAxes", static_cast<uint8_t>(s.lockedAxes), 0, 63)))
+    if (MaybeError e = FirstOf(
+            Check(s.material), CheckTarget("penetrationTarget", s.penetrationTarget),
+            CheckNotNegative("linearDamping", s.linearDamping), CheckNotNegative("angularDamping", s.angularDamping),
+            CheckRange("gravityFactor", s.gravityFactor, -1e6, 1e6), CheckPositive("maxLinearSpeed", s.maxLinearSpeed),
+            CheckPositive("maxAngularSpeed", s.maxAngularSpeed), CheckRange("layer", s.layer, 0, 31),
+            CheckRange("lockedAxes", static_cast<uint8_t>(s.lockedAxes), 0, 63)))
         return e;
     if (s.motion == MotionType::Dynamic)
         if (MaybeError e = CheckInverses(s)) return e;
@@ -165,6 +169,7 @@ MaybeError Check(const SystemSettings& s) {
             CheckRange("solver.substeps", s.solver.substeps, 1, 64),
             CheckPositiveOrInfinite("accuracy.penetration", s.accuracy.penetration),
             CheckPositiveOrInfinite("accuracy.jointError", s.accuracy.jointError),
+            CheckPositiveOrInfinite("accuracy.drift", s.accuracy.drift),
             CheckRange("accuracy.mostSubsteps", s.accuracy.mostSubsteps, 1, 64),
             CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
             CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),

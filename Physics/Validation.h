@@ -14,6 +14,7 @@ MaybeError CheckPosition(const char* field, const Position& value);
 MaybeError CheckRange(const char* field, double value, double low, double high);  // both ends included
 MaybeError CheckPositive(const char* field, double value);
 MaybeError CheckNotNegative(const char* field, double value);
+MaybeError CheckTarget(const char* field, double value);               // 0: none of its own; may be infinite
 MaybeError CheckRotation(const char* field, const Quaternion& value);  // finite, of length 1 within 1e-3
 // One of the enumerators, from 0 to `last`; for masks, a combination of them.
 template <class E>

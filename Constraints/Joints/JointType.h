@@ -103,6 +103,10 @@ public:
         (void)rows;
     }
 
+    // Whether the world takes up part of what it does to its bodies: gears turn in bearings, ropes of pulleys hang from
+    // fixed points. Linear and angular momentum of the bodies change then.
+    virtual bool ReactsOnWorld() const { return false; }
+
     // Called once, when the joint is created, with the current poses (velocities and times are zero): types store
     // reference values here, such as the length of a rope or the phase of gears.
     virtual void Start(const JointPose& pose) { (void)pose; }

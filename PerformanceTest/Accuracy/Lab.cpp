@@ -27,7 +27,9 @@ struct PlannedRun {
 std::vector<PlannedRun> Plan(const LabOptions& options) {
     std::vector<PlannedRun> plan;
     for (const LabScene* scene : options.scenes) {
-        const auto grid = options.isQuick ? QuickGrid(scene->influences) : FullGrid(scene->influences, scene->isSlow);
+        const auto grid = !options.settings.empty() ? options.settings
+                          : options.isQuick         ? QuickGrid(scene->influences)
+                                                    : FullGrid(scene->influences, scene->isSlow);
         for (const Setting& setting : grid)
             plan.push_back(
                 {scene, setting, 1 + static_cast<int>((10.0 * setting.rate + setting.PassesPerSecond()) / 1000)});

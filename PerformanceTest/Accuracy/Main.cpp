@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -26,6 +27,7 @@ int Advise(const LabCommand& command, std::span<const SceneRuns> scenes) {
     return 0;
 }
 
+// Files in the lab's folder, and the document's tables. Returns the exit status.
 int Write(const LabCommand& command, std::span<const SceneRuns> scenes) {
     const Circumstances circumstances{command.commit, command.lab.isQuick, command.lab.threads};
     const nlohmann::ordered_json json = JsonOf(scenes, circumstances);
@@ -41,8 +43,22 @@ int Write(const LabCommand& command, std::span<const SceneRuns> scenes) {
     if (!command.table.empty())
         if (const Status written = WriteTables(tables, command.table); !written)
             return Fail(written.GetError().message);
-    std::printf("%s\nWrote %s\n", tables.c_str(), (folder / "report.html").c_str());
+    if (command.baseline.empty()) std::printf("%s\n", tables.c_str());
+    std::printf("Wrote %s\n", (folder / "report.html").c_str());
     return 0;
+}
+
+int ReportSoak(std::span<const RunRecord> runs) {
+    bool holds = true;
+    for (const RunRecord& run : runs) {
+        std::printf("%s, %s: %.3g us of work per simulated second\n", run.scene.c_str(), run.setting.Key().c_str(),
+                    run.microseconds);
+        for (const auto* list : {&run.errors, &run.figures})
+            for (const NamedValue& each : *list) std::printf("  %s  %.3g\n", each.name.c_str(), each.value);
+        for (const std::string& gate : run.failedGates) std::printf("  does not hold: %s\n", gate.c_str());
+        holds &= run.failedGates.empty();
+    }
+    return holds ? 0 : 1;
 }
 
 int Compare(const LabCommand& command, std::span<const RunRecord> runs) {
@@ -66,9 +82,11 @@ int Run(const LabCommand& command) {
     if (!command.save.empty())
         if (const Status saved = SaveBaseline(command.save, runs.Value(), command.lab.isQuick); !saved)
             return Fail(saved.GetError().message);
-    if (!command.baseline.empty()) return Compare(command, runs.Value());
+    if (command.soaks) return ReportSoak(runs.Value());
+    const int comparison = command.baseline.empty() ? 0 : Compare(command, runs.Value());
     const std::vector<SceneRuns> scenes = ByScene(std::move(runs.Value()));
-    return command.adviseError || command.adviseBudget ? Advise(command, scenes) : Write(command, scenes);
+    if (command.adviseError || command.adviseBudget) return Advise(command, scenes);
+    return std::max(Write(command, scenes), comparison);
 }
 
 }  // namespace

@@ -93,11 +93,22 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
     AddText(app, "--baseline", "compare the errors with those of this file; exit status 1 where one is larger",
             [&](const std::string& text) { command.baseline = text; })
         ->type_name("FILE");
+    app.add_flag("--soak", command.soaks,
+                 "10^6 steps of the scene soak at the default setting, with 1 thread, then with 2, and nothing else: "
+                 "some minutes; exit status 1 where a gate fails");
     AddText(app, "--commit", "what runs.json says of the version",
             [&](const std::string& text) { command.commit = text; });
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
     if (!parsed) return parsed.GetError();
     command.help = parsed.Value();
+    if (command.soaks) {
+        if (name != "all" || command.lab.isQuick || !command.baseline.empty() || !command.save.empty())
+            return Error{ErrorCode::OutOfRange, "--soak is a run of its own: no --scene, --quick, --save, --baseline"};
+        name = "soak";
+        command.lab.settings = {Setting{}};
+        command.lab.isTimedOnce = true;
+        command.lab.folder /= "soak";
+    }
     if (const Status chosen = ChooseScenes(name, command.lab); !chosen) return chosen.GetError();
     return command;
 }

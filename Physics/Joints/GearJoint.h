@@ -25,6 +25,7 @@ public:
     explicit GearJoint(float ratio) : ratio_(ratio) {}
 
     const char* Kind() const override { return "gear"; }
+    bool ReactsOnWorld() const override { return true; }
     JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return 1; }
     void Start(const JointPose& pose) override;

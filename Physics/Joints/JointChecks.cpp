@@ -141,7 +141,7 @@ MaybeError CheckCommon(const JointSettings& s) {
                    CheckBreak("breakTorque", s.breakTorque), CheckRange("substeps", s.substeps, 0, 64),
                    CheckRange("velocityIterations", s.velocityIterations, 0, 255),
                    CheckRange("positionIterations", s.positionIterations, 0, 255),
-                   CheckMassOverride("massOverride", s.massOverride));
+                   CheckTarget("errorTarget", s.errorTarget), CheckMassOverride("massOverride", s.massOverride));
 }
 
 MaybeError CheckMassOverride(const FieldName& name, const MassOverride& o) {

@@ -33,6 +33,7 @@ public:
                 std::optional<float> maxLength);
 
     const char* Kind() const override { return "pulley"; }
+    bool ReactsOnWorld() const override { return true; }
     JointDrawing Drawing() const override;
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;

@@ -24,6 +24,7 @@ public:
     explicit RackAndPinionJoint(float ratio) : ratio_(ratio) {}  // rad/m, not zero
 
     const char* Kind() const override { return "rack and pinion"; }
+    bool ReactsOnWorld() const override { return true; }
     JointDrawing Drawing() const override;
     uint32_t MaxRows() const override { return 1; }
     void Start(const JointPose& pose) override;

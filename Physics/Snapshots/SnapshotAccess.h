@@ -88,7 +88,7 @@ void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
 template <class Stream, class Bodies>
 void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
     auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
-           reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] = bodies;
+           targetCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] = bodies;
     s.Begin(SnapshotSection::Bodies);
     for (uint32_t i = 0; i < cold.size(); ++i) {
         s.Reserve(kMostOfBody);
@@ -98,7 +98,7 @@ void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
     s.EndBlock();
     s.Begin(SnapshotSection::BodyLists);
     s.Reserve(64);
-    s(continuousCount, count, reportsContacts.size_);
+    s(continuousCount, targetCount, count, reportsContacts.size_);
     s.List(placed);
     s.List(awake);
     s.List(free);
@@ -169,7 +169,7 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
 
 template <class Stream, class Joints>
 bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
-    auto& [records, types, joints, gaps, breakable, first, free, count] = store;
+    auto& [records, types, joints, gaps, breakable, targetCount, first, free, count] = store;
     s.Begin(SnapshotSection::Joints);
     for (uint32_t i = 0; i < joints.size(); ++i) {
         s.Reserve(kMostOfJoint);
@@ -186,7 +186,7 @@ bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
     s.EndBlock();
     s.Begin(SnapshotSection::JointLists);
     s.Reserve(64);
-    s(count);
+    s(targetCount, count);
     s.List(first);
     s.List(free);
     s.EndBlock();
@@ -223,7 +223,7 @@ void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts
     auto& [settings, ownJobs, jobs, listener, observer, bodies, colliders, itsPairs, joints, coloring, sleeping,
            sensors, removed, number, lock, outsideFatBounds] = world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
-           sleepCandidates, sweeps, sensing, events] = step;
+           sleepCandidates, sweeps, sensing, events, errors] = step;
     auto& [deepOverlaps, dispersing, crowded] = crowd;
     s.Begin(SnapshotSection::Step);
     s.List(removed);

@@ -55,18 +55,18 @@ void VisitControl(Stream& s, Control& control) {
 
 template <class Stream, class Settings>
 void VisitSystemSettings(Stream& s, Settings& settings) {
-    auto& [gravity, solver, accuracy, sleep, events, narrowPhase, speculativeDistance, penetrationSlop,
+    auto& [gravity, solver, accuracy, sleep, events, measuresErrors, narrowPhase, speculativeDistance, penetrationSlop,
            contactFrequency, contactDampingRatio, contactPushSpeed, depenetrationSpeed, jointFrequency,
            jointDampingRatio, exactJointLoad, jointPushSpeed, restitutionSpeed, boundsMargin, layerCollides] = settings;
     auto& [substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop] = solver;
-    auto& [penetration, jointError, mostSubsteps, largeIslands] = accuracy;
+    auto& [penetration, jointError, drift, mostSubsteps, largeIslands] = accuracy;
     auto& [sleepEnabled, sleepSeconds, sleepSpeed] = sleep;
     auto& [reportsContacts, reportsStays, reportsBodies] = events;
     s(gravity, substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop);
-    s(penetration, jointError, mostSubsteps, largeIslands, sleepEnabled, sleepSeconds, sleepSpeed, narrowPhase);
+    s(penetration, jointError, drift, mostSubsteps, largeIslands, sleepEnabled, sleepSeconds, sleepSpeed, narrowPhase);
     s(speculativeDistance, penetrationSlop, contactFrequency, contactDampingRatio, contactPushSpeed);
     s(depenetrationSpeed, jointFrequency, jointDampingRatio, exactJointLoad, jointPushSpeed, restitutionSpeed);
-    s(boundsMargin, layerCollides, reportsContacts, reportsStays, reportsBodies);
+    s(boundsMargin, layerCollides, reportsContacts, reportsStays, reportsBodies, measuresErrors);
 }
 
 template <class Stream, class Override>
@@ -137,9 +137,9 @@ void VisitOddities(Stream& s, Cold& body, bool isOdd) {
 // step.
 template <class Stream, class Cold>
 bool VisitCold(Stream& s, Cold& body) {
-    auto& [shape, userData, material, force, torque, filter, firstCollider, colliderCount, children, generation,
-           awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, exists, placed, removed,
-           isSensor, isSteady, isWorld, hasGravity] = body;
+    auto& [shape, userData, material, force, torque, penetrationTarget, filter, firstCollider, colliderCount, children,
+           generation, awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, exists, placed,
+           removed, isSensor, isSteady, isWorld, hasGravity] = body;
     s(generation);
     // Members that few bodies use.
     bool isOdd = false;
@@ -164,7 +164,8 @@ bool VisitCold(Stream& s, Cold& body) {
     }
     if (!exists && !removed) return false;
     auto& [friction, restitution, frictionRule, restitutionRule] = material;
-    s(friction, restitution, frictionRule, restitutionRule, firstCollider, colliderCount, sleepingIsland, continuous);
+    s(friction, restitution, frictionRule, restitutionRule, penetrationTarget, firstCollider, colliderCount,
+      sleepingIsland, continuous);
     if (filter) VisitFilter(s, *filter);
     if (children) VisitChildren(s, *children);
     VisitOddities(s, body, isOdd);
@@ -297,14 +298,14 @@ void VisitJointRecord(Stream& s, Record& record) {
 template <class Stream, class Joint>
 bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, fixed,
-           priority, breakForce, breakTorque, effort, massOverride, userData, teleportedBefore] = joint;
+           priority, breakForce, breakTorque, effort, errorTarget, massOverride, userData, teleportedBefore] = joint;
     s(generation, exists);
     if (!exists) return false;
     auto& [linear, angular, line, axis] = locks;
     s(body, next, linear, angular, line, axis, maxRows, color.color);
     if constexpr (!Stream::kWrites) color.slot = 0;
     if (color.color != ColorSlot{}.color) s(color.slot);
-    s(isBreakable, enabled, collideConnected, overridesMass, fixed, priority, breakForce, breakTorque);
+    s(isBreakable, enabled, collideConnected, overridesMass, fixed, priority, breakForce, breakTorque, errorTarget);
     VisitEffort(s, effort);
     if (overridesMass) VisitMassOverride(s, massOverride);
     else if constexpr (!Stream::kWrites) massOverride = {};

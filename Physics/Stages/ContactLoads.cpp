@@ -32,16 +32,54 @@ uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, bool forgets) {
     return static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
 }
 
+template <int N>
+Twist<Wide<N>> VelocitiesOf(const uint32_t (&bodies)[N], const BodyStore& store) {
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = store.states[bodies[i]].VelocityRow();
+    Wide<N> row[8];
+    GatherRows<N>(rows, row);
+    return {VectorAt<BodyState::kLinear>(row), VectorAt<BodyState::kAngular>(row)};
+}
+
+// m2/s2: the squares of how fast anchors part along what joints lock, where the last pass has set the parts up.
+template <int N>
+Wide<N> SquaredPartings(const BallBatch<N>& batch, const BodyStore& bodies) {
+    const Vec3<Wide<N>> parting =
+        PointMotion(VelocitiesOf<N>(batch.bodyA, bodies), VelocitiesOf<N>(batch.bodyB, bodies), batch.armA, batch.armB);
+    return Dot<Wide<N>>(parting, parting);
+}
+template <int N>
+Wide<N> SquaredPartings(const JointBatch<N>& batch, const BodyStore& bodies) {
+    const Twist<Wide<N>> a = VelocitiesOf<N>(batch.bodyA, bodies), b = VelocitiesOf<N>(batch.bodyB, bodies);
+    if (batch.linear == LinearLock::Point) {
+        const Vec3<Wide<N>> parting = batch.point.RelativeMotion(a, b);
+        return Dot<Wide<N>>(parting, parting);
+    }
+    const auto across = batch.line.RelativeMotion(a, b);
+    return across[0] * across[0] + across[1] * across[1];
+}
+
 // Level of lanes with this squared anchor distance, m^2.
 template <class Batch, class Real>
-bool NoteSquaredGaps(const Batch& batch, const Real& squared, const GapScale& scale, std::span<LoadLevel> gaps) {
-    const Real part = Sqrt(squared) * Real(scale.perLevel);
+bool NoteSquaredGaps(const Batch& batch, const Real& squared, const GapScale& scale, const BodyStore& bodies,
+                     JointStore& joints) {
+    Real part = Sqrt(squared) * Real(scale.PerLevel(scale.target));
+    if (joints.targetCount > 0)
+        for (int lane = 0; lane < batch.count; ++lane) {
+            const float target = joints.joints[batch.joint[lane]].errorTarget;
+            if (target > 0) part.Set(lane, std::sqrt(squared[lane]) * scale.PerLevel(target));
+        }
+    // Effort makes gaps less by the square of what it makes speeds less.
+    if (scale.drift < std::numeric_limits<float>::infinity()) {
+        const Real ratio = Sqrt(SquaredPartings(batch, bodies)) * Real(1 / scale.drift);
+        part = Max(part, ratio * ratio * Real(1 / kUnnotedFraction));
+    }
     const uint32_t noted = scale.forgets ? ~0u : (part >= Real(1.0f)).ToBits();
     if (noted == 0) return false;
     bool changed = false;
     for (int lane = 0; lane < batch.count; ++lane) {
         if (!(noted >> lane & 1u)) continue;
-        LoadLevel& gap = gaps[batch.joint[lane]];
+        LoadLevel& gap = joints.gaps[batch.joint[lane]];
         gap.stiffness = scale.stiffness;
         const uint8_t level = NextLevel(gap, LevelOf(part[lane]), false, scale.forgets);
         changed |= level != gap.level;
@@ -65,7 +103,7 @@ bool IsLeftOut(const BodyStore& bodies, const JointStore& joints, const Pair& pa
 
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
                  const JointStore& joints, PairStore& pairs) {
-    if (!AdaptsToLoads(step.settings)) return;
+    if (!AdaptsToLoads(step.settings, bodies)) return;
     for (uint32_t index : began) {
         const Pair& pair = pairs.pairs[index];
         if (IsLeftOut(bodies, joints, pair)) continue;
@@ -77,8 +115,9 @@ void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const
         const BodyDynamics& lighter = lower.inverseMass > upper.inverseMass ? lower : upper;
         const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * step.softness;
         const float part = sink / SizeOf(lighter);
-        if (!(part > step.settings.accuracy.penetration)) continue;
-        const uint32_t level = LevelOf(part / LargestUnnotedSink(step.settings.accuracy));
+        const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
+        if (!(part > target)) continue;
+        const uint32_t level = LevelOf(part / LargestUnnoted(target));
         LoadLevel& load = pairs.loads[index];
         if (level <= load.level) continue;
         load.level = load.recent = static_cast<uint8_t>(level);
@@ -115,7 +154,13 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
         force = Select(unseen, Max(force, weight), force);
     }
     const Real sink = force * inverseMass * Real(scale.softness);
-    const Real part = sink * Real(scale.perLevel) / Sqrt(squaredSize);
+    Real part = sink * Real(1 / LargestUnnoted(scale.target)) / Sqrt(squaredSize);
+    if (bodies.targetCount > 0)
+        for (int lane = 0; lane < batch.count; ++lane) {
+            const Pair& pair = pairs.pairs[batch.contact[lane]];
+            const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, scale.target);
+            part.Set(lane, sink[lane] * (1 / LargestUnnoted(target)) / std::sqrt(squaredSize[lane]));
+        }
     // Contacts with little load are only processed when levels may decrease; each lane independently, so that the
     // result does not depend on the other lanes of a batch.
     const uint32_t loaded = scale.forgets ? ~0u : (part >= Real(1.0f)).ToBits();
@@ -134,21 +179,21 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
 }
 
 template <int N>
-bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps) {
+bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, const BodyStore& bodies, JointStore& joints) {
     using Real = Wide<N>;
     if (batch.linear == LinearLock::None) return false;
     Vec3<Real> gap = batch.startOffset;
     if (batch.linear == LinearLock::Line) gap = gap - batch.startLine * Dot<Real>(gap, batch.startLine);
-    return NoteSquaredGaps(batch, Dot<Real>(gap, gap), scale, gaps);
+    return NoteSquaredGaps(batch, Dot<Real>(gap, gap), scale, bodies, joints);
 }
 template <int N>
-bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps) {
-    return NoteSquaredGaps(batch, Dot<Wide<N>>(batch.startOffset, batch.startOffset), scale, gaps);
+bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, const BodyStore& bodies, JointStore& joints) {
+    return NoteSquaredGaps(batch, Dot<Wide<N>>(batch.startOffset, batch.startOffset), scale, bodies, joints);
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                           \
-    template bool NoteGaps(const JointBatch<lanes>&, const GapScale&, std::span<LoadLevel>); \
-    template bool NoteGaps(const BallBatch<lanes>&, const GapScale&, std::span<LoadLevel>);
+#define FULCRUM_INSTANTIATE(lanes)                                                                    \
+    template bool NoteGaps(const JointBatch<lanes>&, const GapScale&, const BodyStore&, JointStore&); \
+    template bool NoteGaps(const BallBatch<lanes>&, const GapScale&, const BodyStore&, JointStore&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

@@ -13,11 +13,18 @@
 
 namespace fulcrum {
 
+// Sinks and gaps are quantized to powers of two of a quarter of their target, AccuracyTarget::penetration and
+// jointError: level i is below 2^i of that.
+constexpr float kUnnotedFraction = 0.25f;
+inline float LargestUnnoted(float target) { return kUnnotedFraction * target; }
+// Upper bound of the ratio to the target for a level.
+inline float ExcessOfLevel(uint32_t level) { return std::ldexp(kUnnotedFraction, static_cast<int>(level)); }
+
 // The sink of a contact is its penetration at rest, a consequence of soft rows. A normal force F on a body of mass m,
 // the lighter of the two, gives a sink of F / (m w^2), w = 2 pi StiffestFrequency. It is proportional to the square of
 // the substep.
 struct SinkScale {
-    float perLevel;    // 1 / LargestUnnotedSink
+    float target;      // AccuracyTarget::penetration
     float inverseDt;   // 1/s, of the batch's substeps
     float softness;    // s^2: 1 / w^2 for the system's substeps
     float depthScale;  // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
@@ -35,28 +42,39 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
 // Levels of joint errors assume that the gap is proportional to the square of the substep; if it is not, the efforts
 // converge in a few rounds.
 struct GapScale {
-    float perLevel;  // 1/m: scales a gap with the batch's substeps so that LargestUnnotedGap with the system's substeps
-                     // is 1
-    uint8_t stiffness;  // see LoadLevel
-    bool forgets;       // see SinkScale::forgets
+    float target;        // m: AccuracyTarget::jointError
+    float drift;         // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
+    float impulseScale;  // substep of the batch / that of the system's settings
+    uint8_t stiffness;   // see LoadLevel
+    bool forgets;        // as SinkScale::forgets
+
+    // 1/m: a gap in the batch's substeps times this is 1 where the system's leave LargestUnnoted.
+    float PerLevel(float itsTarget) const { return 1 / (LargestUnnoted(itsTarget) * impulseScale * impulseScale); }
 };
 
-// Whether the settings give islands more effort by load.
-inline bool AdaptsToLoads(const SystemSettings& settings) {
-    return settings.accuracy.penetration < std::numeric_limits<float>::infinity();
+// Speeds that rows leave fall with the substep, its square root of what sinks do: AccuracyTarget::drift, m/s, in
+// substeps that are `impulseScale` times the system's.
+inline float DriftIn(const AccuracyTarget& accuracy, float impulseScale) { return accuracy.drift * impulseScale; }
+
+// Whether islands get more effort by what they carry, and by the gaps of their joints.
+inline bool AdaptsToDrift(const SystemSettings& settings) {
+    return settings.accuracy.drift < std::numeric_limits<float>::infinity();
+}
+inline bool AdaptsToLoads(const SystemSettings& settings, const BodyStore& bodies) {
+    return settings.accuracy.penetration < std::numeric_limits<float>::infinity() || bodies.targetCount > 0;
+}
+inline bool AdaptsToGaps(const SystemSettings& settings, const JointStore& joints) {
+    return settings.accuracy.jointError < std::numeric_limits<float>::infinity() || joints.targetCount > 0 ||
+           AdaptsToDrift(settings);
 }
 
-inline bool AdaptsToGaps(const SystemSettings& settings) {
-    return settings.accuracy.jointError < std::numeric_limits<float>::infinity();
+// AccuracyTarget::penetration of two bodies, or what they have in its place.
+inline float PenetrationTargetOf(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB, float system) {
+    if (bodies.targetCount == 0) return system;
+    const float a = bodies.cold[bodyA].penetrationTarget, b = bodies.cold[bodyB].penetrationTarget;
+    if (a > 0 && b > 0) return std::min(a, b);
+    return a > 0 || b > 0 ? std::max(a, b) : system;
 }
-
-// Sinks and gaps are quantized to powers of two of a quarter of their target, AccuracyTarget::penetration and
-// jointError: level i is below 2^i of that.
-constexpr float kUnnotedFraction = 0.25f;
-inline float LargestUnnotedSink(const AccuracyTarget& accuracy) { return kUnnotedFraction * accuracy.penetration; }
-inline float LargestUnnotedGap(const AccuracyTarget& accuracy) { return kUnnotedFraction * accuracy.jointError; }
-// Upper bound of the ratio to the target for a level.
-inline float ExcessOfLevel(uint32_t level) { return std::ldexp(kUnnotedFraction, static_cast<int>(level)); }
 
 // m^2: the square of half the edge of a cube with the same inverse mass and sum of inverse moments of inertia.
 // Infinite if rotation is locked.
@@ -81,11 +99,11 @@ template <int N, bool kFixedB>
 bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, const BodyStore& bodies,
                const JointStore& joints, PairStore& pairs);
 
-// Updates the levels of a batch's joints from their position errors at the start of the step. Returns whether any level
-// changed.
+// Updates the levels of a batch's joints from their position errors at the start of the step and the speeds of their
+// anchors at its end. Returns whether any level changed.
 template <int N>
-bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps);
+bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, const BodyStore& bodies, JointStore& joints);
 template <int N>
-bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, std::span<LoadLevel> gaps);
+bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, const BodyStore& bodies, JointStore& joints);
 
 }  // namespace fulcrum

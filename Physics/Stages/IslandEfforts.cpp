@@ -21,10 +21,11 @@ void RaiseLeast(IslandEffort& effort, const LeastEffort& to, uint32_t culprit) {
 // Extent of an island: moments of its centers of mass relative to one of them, and masses.
 struct Extent {
     float count = 0;
-    float low = 0, high = 0;                     // m, along the direction opposite to gravity
-    float x = 0, z = 0, xx = 0, xz = 0, zz = 0;  // sums over the horizontal coordinates
-    float mass = 0;                              // kg, total
-    uint32_t lightest = ~0u;                     // body
+    float low = 0, high = 0;                                // m, along the direction opposite to gravity
+    float x = 0, z = 0, xx = 0, xz = 0, zz = 0;             // sums over the horizontal coordinates
+    float mass = 0;                                         // kg, total
+    float target = std::numeric_limits<float>::infinity();  // the least of its bodies, see PenetrationTargetOf
+    uint32_t lightest = ~0u;                                // body
     bool hasJoints = false;
 
     void Add(float up, float along, float across) {
@@ -114,6 +115,10 @@ public:
     }
 
 private:
+    // How deep it may sink on what has no target of its own.
+    float TargetOf(uint32_t body) const {
+        return PenetrationTargetOf(bodies_, body, body, settings_.accuracy.penetration);
+    }
     uint32_t RootOf(uint32_t body) { return sets_.Find(bodies_.cold[body].awakePlace); }
 
     void FindExtents() {
@@ -134,6 +139,7 @@ private:
             const float inverseMass = bodies_.dynamics[body].inverseMass;
             if (!(inverseMass > 0)) continue;
             extent.mass += 1 / inverseMass;
+            extent.target = std::min(extent.target, TargetOf(body));
             if (extent.lightest == ~0u || inverseMass > bodies_.dynamics[extent.lightest].inverseMass)
                 extent.lightest = body;
         }
@@ -152,9 +158,10 @@ private:
 
     // For large islands only the needs of small bodies by their own weight: more would cost too much.
     void AddNeedsOfLarge() {
-        const float least = kWeights * Length(settings_.gravity) * softness_ / settings_.accuracy.penetration;
+        const float weights = kWeights * Length(settings_.gravity) * softness_;
         for (uint32_t i = 0; i < bodies_.awake.size(); ++i) {
             const BodyDynamics& body = bodies_.dynamics[bodies_.awake[i]];
+            const float least = weights / TargetOf(bodies_.awake[i]);
             if (!(SquaredSizeOf(body) < least * least)) continue;
             const uint32_t root = sets_.Find(i);
             if (sizes_[root] > mostLoaded_) needs_[root].Raise(least / SizeOf(body), bodies_.awake[i]);
@@ -173,8 +180,7 @@ private:
         if (!(height * height > kSlender * kSlender * (size * size + (isLarge ? narrow : wide)))) return;
         float sink = extent.mass * lightest.inverseMass * Length(settings_.gravity) * softness_ / size;
         if (isLarge) sink /= std::sqrt((1 + narrow / (size * size)) * (1 + wide / (size * size)));
-        needs_[root].Raise(sink / settings_.accuracy.penetration *
-                               BucklingFactor(size, extent, isLarge ? kBucklingOfLarge : kBuckling),
+        needs_[root].Raise(sink / extent.target * BucklingFactor(size, extent, isLarge ? kBucklingOfLarge : kBuckling),
                            extent.lightest);
     }
 
@@ -255,7 +261,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
     std::span<Need> needs = scratch.Allocate<Need>(count);
     std::fill(needs.begin(), needs.end(), Need{});
-    const bool adaptsToGaps = AdaptsToGaps(step.settings);
+    const bool adaptsToGaps = AdaptsToGaps(step.settings, joints);
     VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
         const Joint& joint = joints.joints[entry.constraint];
         if (!joint.effort.IsAny() && !adaptsToGaps) return;
@@ -268,7 +274,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         needs[root].isStiff = true;
         if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });
-    if (AdaptsToLoads(step.settings))
+    if (AdaptsToLoads(step.settings, bodies))
         LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
     else if (!adaptsToGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {

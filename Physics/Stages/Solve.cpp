@@ -10,6 +10,7 @@
 // Rows of contacts are constant within a step; joints add the change due to the rotation of their parts.
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
@@ -68,14 +69,16 @@ bool IsLastOfSubstep(std::span<const Verb> verbs, size_t i) {
 class StepSolver {
 public:
     // pseudo: zeroed pseudo-velocities of all bodies; null if the group has no joints that are far apart.
+    // pushes: by body; empty if not requested.
     StepSolver(const MovedBodies& moved, SolverLayout& layout, const SolverGroup& group, const Effort& effort,
-               BodyState* pseudo)
+               BodyState* pseudo, std::span<PushNote> pushes)
         : moved_(moved),
           bodies_(moved.store),
           layout_(layout),
           group_(group),
           effort_(effort),
           pseudo_(pseudo),
+          pushes_(pushes),
           notes_(layout.notes.empty() ? nullptr : layout.notes.data()),
           h_(effort.substepDt) {}
 
@@ -136,11 +139,15 @@ private:
     }
 
     void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
-        if (verb == Verb::IntegratePoses)
+        if (verb == Verb::IntegratePoses) {
             IntegratePoses(moved_, bodies, h_, substep + 1 == effort_.solver.substeps, pseudo_, findings);
-        else if (verb == Verb::IntegrateVelocities) IntegrateVelocities(bodies_, bodies, h_, substep > 0, findings);
-        else
+            if (!pushes_.empty()) NoteMoved(bodies_, bodies, pseudo_, pushes_);
+        } else if (verb == Verb::IntegrateVelocities) {
+            if (!pushes_.empty() && substep > 0) NotePushes(bodies_, bodies, h_, pushes_);
+            IntegrateVelocities(bodies_, bodies, h_, substep > 0, findings);
+        } else {
             for (const uint32_t body : bodies) pseudo_[body] = {};
+        }
     }
 
     // Runs the trees of a group, before its batches.
@@ -295,6 +302,7 @@ private:
     const SolverGroup& group_;
     const Effort& effort_;
     BodyState* pseudo_;
+    std::span<PushNote> pushes_;
     ContactNote* notes_;  // by record; null without contact events
     float h_;             // s, of a substep
 };
@@ -374,7 +382,7 @@ bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
 // and are pulled.
 template <class LoopOfEffort>
 void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& layout, bool far,
-              const StepWorkers& workers, LoopOfEffort&& loopOf) {
+              std::span<PushNote> pushes, const StepWorkers& workers, LoopOfEffort&& loopOf) {
     const std::span<const SolverGroup> groups = layout.groups;
     const std::span<BodyState> pseudo = workers.scratch.Allocate<BodyState>(far ? moved.store.states.size() : 0);
     std::ranges::fill(pseudo, BodyState{});
@@ -391,13 +399,13 @@ void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& l
         const std::span<const Phase> phases = PhasesOf(loops[g], layout, groups[g], workers.scratch);
         if (phases.empty()) continue;
         const Effort effort = EffortOf(step, groups[g]);
-        StepSolver(moved, layout, groups[g], effort, pseudoOf(g)).RunTogether(phases, workers);
+        StepSolver(moved, layout, groups[g], effort, pseudoOf(g), pushes).RunTogether(phases, workers);
     }
     workers.jobs.ParallelFor(static_cast<uint32_t>(groups.size()), 1, [&](JobRange range) {
         for (uint32_t g = range.begin; g < range.end; ++g) {
             if (groups[g].isLarge) continue;
             const Effort effort = EffortOf(step, groups[g]);
-            StepSolver(moved, layout, groups[g], effort, pseudoOf(g))
+            StepSolver(moved, layout, groups[g], effort, pseudoOf(g), pushes)
                 .RunAlone(loops[g], workers.findings[range.worker]);
         }
     });
@@ -406,12 +414,17 @@ void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& l
 }  // namespace
 
 void Solve(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, const JointStore& joints,
-           const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, const StepWorkers& workers) {
+           const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, std::span<PushNote> pushes,
+           const StepWorkers& workers) {
     if (coloring.Size() == 0) return;
     const bool far =
         std::ranges::any_of(workers.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
-    RunVerbs(step, {step.settings, colliders, pairs, joints, bodies}, layout, far, workers,
+    RunVerbs(step, {step.settings, colliders, pairs, joints, bodies}, layout, far, pushes, workers,
              [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, pulls, workers.scratch); });
+    if (pushes.empty()) return;
+    for (const SolverGroup& group : layout.groups)
+        NotePushes(bodies, std::span(layout.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),
+                   EffortOf(step, group).substepDt, pushes);
 }
 
 }  // namespace fulcrum

@@ -64,9 +64,11 @@ void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintC
              const StepWorkers& workers, StepReport& report);
 
 // Substeps: integrates velocities, warm starts, iterates, integrates poses, relax or position iterations. Writes
-// velocities, displacements and the batches. Colliders and pairs are read for dispersing bodies.
+// velocities, displacements and the batches. Colliders and pairs are read for dispersing bodies. pushes: by body,
+// filled for ErrorMeter.h; empty if not requested.
 void Solve(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, const JointStore& joints,
-           const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, const StepWorkers& workers);
+           const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, std::span<PushNote> pushes,
+           const StepWorkers& workers);
 
 // The Store stage consists of the following three and SettleStopped.
 // Writes the batches' impulses to the records of contacts and joints, and updates the load levels.

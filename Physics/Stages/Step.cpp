@@ -75,7 +75,9 @@ constexpr Stage kStages[] = {
      }},
     {"Solve",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
-         Solve(step, world.colliders, world.pairs, world.joints, world.coloring, world.bodies, state.solver, workers);
+         if (step.settings.measuresErrors) BeginErrors(step, world.bodies, state.errors);
+         Solve(step, world.colliders, world.pairs, world.joints, world.coloring, world.bodies, state.solver,
+               step.settings.measuresErrors ? std::span(state.errors.pushes) : std::span<PushNote>(), workers);
      }},
     {"Store",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
@@ -88,6 +90,9 @@ constexpr Stage kStages[] = {
     {"Continuous",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          Continuous(step, world.pairs, world, state.sweeps, workers, state.report);
+         if (step.settings.measuresErrors)
+             EndErrors(step, world.bodies, world.joints, world.coloring, state.sweeps, state.errors,
+                       state.report.errors);
      }},
     {"Sense",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
@@ -187,19 +192,13 @@ bool ComesBefore(const IslandEffortReport& a, const IslandEffortReport& b) {
            std::tie(a.substeps, a.velocityIterations, a.positionIterations, b.culprit.index);
 }
 
-// An island with an effort of its own is a group of its own.
 void ReportEfforts(const SolverSettings& settings, const BodyStore& bodies, const SolverLayout& layout,
                    StepReport& report) {
-    for (const SolverGroup& group : layout.groups) {
-        if (!group.effort.Exceeds(settings)) continue;
+    VisitEfforts(settings, bodies, layout, [&](IslandEffortReport effort) {
         ++report.islandsWithMoreEffort;
-        IslandEffortReport effort{std::max<int>(group.effort.substeps, settings.substeps),
-                                  std::max<int>(group.effort.velocityIterations, settings.velocityIterations),
-                                  std::max<int>(group.effort.positionIterations, settings.positionIterations),
-                                  bodies.IdOf(group.culprit)};
         for (IslandEffortReport& listed : report.mostEffort)
             if (ComesBefore(effort, listed)) std::swap(effort, listed);
-    }
+    });
 }
 
 void CountBodies(const WorldState& world, const SolverLayout& solver, StepReport& report) {
@@ -231,6 +230,17 @@ void RunStages(WorldState& world, StepState& state, const StepContext& step) {
 
 const char* StageName(int stage) { return kStages[stage].name; }
 
+// An island with an effort of its own is a group of its own.
+void VisitEfforts(const SolverSettings& settings, const BodyStore& bodies, const SolverLayout& layout,
+                  FunctionRef<void(const IslandEffortReport&)> visit) {
+    for (const SolverGroup& group : layout.groups)
+        if (group.effort.Exceeds(settings))
+            visit({std::max<int>(group.effort.substeps, settings.substeps),
+                   std::max<int>(group.effort.velocityIterations, settings.velocityIterations),
+                   std::max<int>(group.effort.positionIterations, settings.positionIterations),
+                   bodies.IdOf(group.culprit), group.bodiesEnd - group.bodiesBegin});
+}
+
 void RunStep(WorldState& world, StepState& state, double dt) {
     ForgetRemoved(world);
     BeginReport(world, state);
@@ -239,7 +249,7 @@ void RunStep(WorldState& world, StepState& state, double dt) {
         const StepContext step = ContextOf(world, state, dt);
         state.scratch.Reset();
         state.sweeps.isKept = world.bodies.continuousCount > 0 || !world.sensors.IsEmpty();
-        state.sweeps.reportsHits = world.settings.events.contacts;
+        state.sweeps.reportsHits = world.settings.events.contacts || world.settings.measuresErrors;
         BeginPushes(world);
         BeginSingleMoves(world.bodies);
         RunStages(world, state, step);

@@ -27,9 +27,9 @@ size_t HeapBytes(const CrowdState& crowd) {
 
 size_t HeapBytes(const StepState& step) {
     const auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
-                 savedEfforts, sleepCandidates, sweeps, sensing, events] = step;
+                 savedEfforts, sleepCandidates, sweeps, sensing, events, errors] = step;
     return HeapBytes(lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
-                     savedEfforts, sleepCandidates, sweeps, sensing, events);
+                     savedEfforts, sleepCandidates, sweeps, sensing, events, errors);
 }
 
 }  // namespace fulcrum

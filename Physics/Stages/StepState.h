@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/EventBuffers.h>
 #include <Fulcrum/Physics/Stages/SavedEfforts.h>
 #include <Fulcrum/Physics/Stages/SensorSearch.h>
@@ -108,6 +109,7 @@ struct StepState {
     SweepStore sweeps;
     SensorSearch sensing;
     EventBuffers events;
+    ErrorMeter errors;
 };
 
 size_t HeapBytes(const StepState& step);

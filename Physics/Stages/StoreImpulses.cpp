@@ -34,12 +34,12 @@ template <int N>
 void StoreBatch(const Records& to, const JointBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
     StoreJoints(batch, to.joints.records.data(), to.joints.types.data(), to.bodies.states.data(), scale.dt,
                 scale.impulseScale);
-    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.joints.gaps);
+    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.bodies, to.joints);
 }
 template <int N>
 void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
     StoreJoints(batch, to.joints.records.data(), scale.dt, scale.impulseScale);
-    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.joints.gaps);
+    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.bodies, to.joints);
 }
 
 template <class Batch>
@@ -61,11 +61,11 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                    JointStore& joints, const StepWorkers& workers) {
     const SystemSettings& settings = step.settings;
     const Records to{bodies, pairs, joints};
-    const bool notesSinks = AdaptsToLoads(settings), notesGaps = AdaptsToGaps(settings);
+    const bool notesSinks = AdaptsToLoads(settings, bodies), notesGaps = AdaptsToGaps(settings, joints);
     const bool notesLarge = settings.accuracy.largeIslands || layout.OverflowCount() > 0;
     // impulseScale: see Effort; stiffness: see LoadLevel. Springs are those of `springs` of the system's substep.
     const auto sinkScaleOf = [&](float impulseScale, float springs, uint8_t stiffness) {
-        return SinkScale{.perLevel = 1 / LargestUnnotedSink(settings.accuracy),
+        return SinkScale{.target = settings.accuracy.penetration,
                          .inverseDt = 1 / (step.substepDt * impulseScale),
                          .softness = step.softness,
                          .depthScale = 1 / (springs * springs),
@@ -74,7 +74,9 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                          .forgets = step.number % kStepsToForget == 0};
     };
     const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
-        return GapScale{.perLevel = 1 / (LargestUnnotedGap(settings.accuracy) * impulseScale * impulseScale),
+        return GapScale{.target = settings.accuracy.jointError,
+                        .drift = DriftIn(settings.accuracy, impulseScale),
+                        .impulseScale = impulseScale,
                         .stiffness = std::max<uint8_t>(stiffness, 1),
                         .forgets = step.number % kStepsToForget == 0};
     };

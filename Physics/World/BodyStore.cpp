@@ -181,11 +181,11 @@ size_t HeapBytes(const BodyCold& body) {
 
 size_t HeapBytes(const BodyStore& store) {
     const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                 continuousCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] =
-        store;
+                 continuousCount, targetCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges,
+                 free, count] = store;
     return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                     continuousCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free,
-                     count);
+                     continuousCount, targetCount, reportsContacts, pushed, singleMoves, sleepChanges,
+                     notesSleepChanges, free, count);
 }
 
 }  // namespace fulcrum

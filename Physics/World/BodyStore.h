@@ -148,6 +148,7 @@ struct BodyCold {
     uint64_t userData = 0;
     Material material;
     Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  // of the next step
+    float penetrationTarget = 0;                                // see BodySettings
     std::unique_ptr<BodyFilter> filter;                         // null: the default
     uint32_t firstCollider = 0, colliderCount = 0;
     std::unique_ptr<BodyChildren> children;  // if `shape` is a mutable compound
@@ -215,6 +216,7 @@ public:
     std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
     uint32_t worldBody = kNone;    // the static one that stands for the world in joints, see JointInterface.cpp
     uint32_t continuousCount = 0;  // bodies with continuous collision
+    uint32_t targetCount = 0;      // bodies with a penetrationTarget
     IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
     IndexSet pushed;               // bodies that have a force or torque, or had one in the last step
     IndexSet singleMoves;          // bodies with a SingleMove
@@ -231,6 +233,10 @@ public:
         return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
     }
     BodyId IdOf(uint32_t index) const { return {index, cold[index].generation}; }
+    void SetPenetrationTarget(uint32_t index, float target) {
+        targetCount += (target > 0) - (cold[index].penetrationTarget > 0);
+        cold[index].penetrationTarget = target;
+    }
     const BodyFilter& FilterOf(uint32_t index) const {
         static const BodyFilter kDefault;
         return cold[index].filter ? *cold[index].filter : kDefault;

@@ -31,6 +31,7 @@ uint32_t JointStore::Allocate() {
 
 void JointStore::Free(uint32_t index) {
     Joint& joint = joints[index];
+    SetErrorTarget(index, 0);
     joint.type.reset();
     joint.exists = false;
     ++joint.generation;
@@ -83,8 +84,8 @@ bool JointStore::ForbidsContact(uint32_t bodyA, uint32_t bodyB) const {
 size_t HeapBytes(const Joint& joint) { return joint.type ? sizeof(JointType) : 0; }
 
 size_t HeapBytes(const JointStore& store) {
-    const auto& [records, types, joints, gaps, breakable, first, free, count] = store;
-    return HeapBytes(records, types, joints, gaps, breakable, first, free, count);
+    const auto& [records, types, joints, gaps, breakable, targetCount, first, free, count] = store;
+    return HeapBytes(records, types, joints, gaps, breakable, targetCount, first, free, count);
 }
 
 }  // namespace fulcrum

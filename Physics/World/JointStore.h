@@ -57,7 +57,8 @@ struct Joint {
     bool fixed[2] = {false, false};  // the body is immovable: static, kinematic or frozen
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
-    LeastEffort effort;  // minimum effort for its island
+    LeastEffort effort;     // minimum effort for its island
+    float errorTarget = 0;  // see JointSettings
     MassOverride massOverride;
     uint64_t userData = 0;
     uint64_t teleportedBefore = 0;  // the step before which a body of its mechanism was last teleported
@@ -81,6 +82,7 @@ public:
     std::vector<Joint> joints;
     std::vector<LoadLevel> gaps;  // load levels of gaps between anchors
     IndexSet breakable;
+    uint32_t targetCount = 0;  // joints with an errorTarget
 
     uint32_t Count() const { return count_; }
     uint32_t Allocate();        // an index with default values; exists is set
@@ -90,6 +92,10 @@ public:
     }
     JointId IdOf(uint32_t index) const { return {index, joints[index].generation}; }
 
+    void SetErrorTarget(uint32_t index, float target) {
+        targetCount += (target > 0) - (joints[index].errorTarget > 0);
+        joints[index].errorTarget = target;
+    }
     // Clears its impulses and forces.
     void Forget(uint32_t index);
 

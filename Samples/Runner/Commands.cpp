@@ -199,6 +199,7 @@ int Execute(const Command& command) {
     input.seed = command.options.seed;
     input.solver = command.options.solver;
     input.narrowPhase = command.options.narrowPhase;
+    input.measuresErrors = command.options.errors;
     switch (command.kind) {
         case CommandKind::Run:
             return RunJob(

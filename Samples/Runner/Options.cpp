@@ -91,6 +91,8 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
                [&](int value) { options.threads = value; });
     AddSolverOptions(app, options.solver);
     AddNarrowPhaseOption(app, options.narrowPhase);
+    app.add_flag("--errors", options.errors,
+                 "also measure and report what steps make of energy and momentum, gaps, pushes, efforts");
     AddText(app, "--record", "html,glb (default), html, glb or none", [&](const std::string& text) {
         SetRecord(text, options);
     })->type_name("KINDS");

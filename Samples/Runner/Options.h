@@ -23,6 +23,7 @@ struct RunOptions {
     int threads = 1;
     SolverSettings solver;
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
+    bool errors = false;  // --errors
     bool recordHtml = true, recordGlb = true;
     std::filesystem::path json;         // empty: none
     std::filesystem::path out = "out";  // folder of what is recorded

@@ -61,6 +61,21 @@ void AddRest(const RunFigures& figures, std::vector<ReportLine>& lines) {
             Energy(figures.energyRise->joules) + Text(", %.3g of that at the start", figures.energyRise->relative));
 }
 
+void AddErrors(const ErrorFigures& errors, std::vector<ReportLine>& lines) {
+    const auto add = [&](const char* label, const WorstOfRun& worst, const std::string& value) {
+        lines.push_back({"Errors of a step, largest", label,
+                         worst.whose.empty() ? "none" : value + ", " + worst.whose + Text(" at step %d", worst.step)});
+    };
+    add("joint, apart", errors.jointError, Length(errors.jointError.value));
+    add("joint, turned", errors.jointAngle, Text("%.4g rad", errors.jointAngle.value));
+    add("energy gained by an island", errors.energyGain, Energy(errors.energyGain.value));
+    add("momentum", errors.momentum, Text("%.4g N s", errors.momentum.value));
+    add("angular momentum", errors.angularMomentum, Text("%.4g N m s", errors.angularMomentum.value));
+    add("push", errors.push, Energy(errors.push.value));
+    add("effort", errors.effort, Text("%.0f substeps", errors.effort.value));
+    lines.push_back({"Errors of a step, largest", "energy of all, all steps", Energy(errors.energyChange)});
+}
+
 // Rare events, if they happened.
 void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
     const auto add = [&](const char* label, uint64_t count) {
@@ -144,6 +159,7 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     AddRest(figures, lines);
     if (scene.accuracy) add("Result", "accuracy", AccuracyText(scene, figures));
     add("Result", "pose hash", HashText(figures.poseHash));
+    if (figures.errors) AddErrors(*figures.errors, lines);
     AddRemarks(figures, lines);
     return lines;
 }
@@ -177,6 +193,20 @@ void AddRest(const RunFigures& figures, nlohmann::ordered_json& json) {
     json["asleep_limit_s"] = number(figures.sleep.has_value(), sleep.limit);
     json["energy_rise_j"] = number(figures.energyRise.has_value(), rise.joules);
     json["energy_rise"] = number(figures.energyRise.has_value(), rise.relative);
+}
+
+nlohmann::ordered_json ErrorsJson(const ErrorFigures& errors) {
+    const auto worst = [](const WorstOfRun& w) {
+        return nlohmann::ordered_json{{"value", w.value}, {"whose", w.whose}, {"step", w.step}};
+    };
+    return {{"joint_m", worst(errors.jointError)},
+            {"joint_rad", worst(errors.jointAngle)},
+            {"energy_gain_j", worst(errors.energyGain)},
+            {"momentum_n_s", worst(errors.momentum)},
+            {"angular_momentum_n_m_s", worst(errors.angularMomentum)},
+            {"push_j", worst(errors.push)},
+            {"substeps", worst(errors.effort)},
+            {"energy_change_j", errors.energyChange}};
 }
 
 }  // namespace
@@ -225,6 +255,7 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
                                 {"energy_end_j", figures.energyAtEnd},
                                 {"memory_bytes", figures.memoryBytes}};
     AddRest(figures, json);
+    if (figures.errors) json["errors"] = ErrorsJson(*figures.errors);
     if (!figures.accuracies.empty()) json["accuracy_of_runs"] = figures.accuracies;
     if (figures.queryCount > 0) json[figures.queryName + "_per_s"] = QueriesPerSecond(figures);
     if (figures.singleQueryNs > 0) json["single_query_ns"] = figures.singleQueryNs;

@@ -22,6 +22,26 @@ void NotePenetration(const SceneWorld& world, RunFigures& figures) {
     figures.deepestStep = world.StepCount();
 }
 
+void NoteErrors(const SceneWorld& world, ErrorFigures& figures) {
+    const StepReport& report = world.System().Report();
+    const StepErrors& errors = report.errors;
+    const auto note = [&](WorstOfRun& worst, double value, auto&& whose) {
+        if (!(value > worst.value)) return;
+        worst = {value, whose(), world.StepCount()};
+    };
+    const auto body = [&](BodyId id) { return [&world, id] { return BodyText(world, id); }; };
+    const auto joint = [&](JointId id) { return [id] { return "joint " + std::to_string(id.index); }; };
+    note(figures.jointError, double{report.largestJointError}, joint(report.worstJoint));
+    note(figures.jointAngle, double{report.largestJointAngle}, joint(report.mostTurnedJoint));
+    note(figures.energyGain, errors.energyGain, body(errors.mostGaining));
+    note(figures.momentum, errors.momentumError, body(errors.momentumBody));
+    note(figures.angularMomentum, errors.angularMomentumError, body(errors.angularMomentumBody));
+    note(figures.push, errors.largestPushEnergy, body(errors.mostPushed));
+    const IslandEffortReport& effort = report.mostEffort[0];
+    note(figures.effort, effort.substeps, body(effort.culprit));
+    figures.energyChange += errors.energyChange;
+}
+
 void CountBodies(const SceneWorld& world, RunFigures& figures) {
     world.System().VisitBodies([&](BodyId id) {
         ++figures.bodies;
@@ -126,6 +146,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
     figures.narrowPhase = world.System().Settings().narrowPhase;
     figures.energyAtStart = TotalEnergy(world.System());
 
+    if (world.System().Settings().measuresErrors) figures.errors.emplace();
     PenetrationMeter meter(world);
     std::optional<RestFigures> rest;
     if (restMeters == RestMeters::On) rest.emplace(world, untimed + steps, dt);
@@ -140,6 +161,7 @@ Result<RunFigures> Simulate(SceneWorld& world, int untimed, int steps, double dt
             for (size_t stage = 0; stage < stageMs.size(); ++stage) stageMs[stage].push_back(report.stageMs[stage]);
         }
         NotePenetration(world, figures);
+        if (figures.errors) NoteErrors(world, *figures.errors);
         if (rest) rest->AfterStep(step + 1);
         if (meter.Measure())
             figures.overlapPair = BodyText(world, meter.Worst().bodyA) + " and " + BodyText(world, meter.Worst().bodyB);

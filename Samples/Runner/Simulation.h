@@ -28,6 +28,22 @@ struct EnergyRise {
     double joules = 0, relative = 0;
 };
 
+// The largest value of a step, at which it was, and whose.
+struct WorstOfRun {
+    double value = 0;
+    std::string whose;  // empty: nobody's
+    int step = 0;
+};
+
+// What StepReport::errors said in a run whose world measures them, and what belongs to it.
+struct ErrorFigures {
+    WorstOfRun jointError, jointAngle;                 // m, rad
+    WorstOfRun energyGain, momentum, angularMomentum;  // J, N s, N m s
+    WorstOfRun push;                                   // J, of one body
+    WorstOfRun effort;                                 // substeps; no value where the settings' always did
+    double energyChange = 0;                           // J, summed over all steps
+};
+
 // Measurements of a run. Times are wall clock, ms.
 struct RunFigures {
     int steps = 0;  // those that were timed
@@ -58,6 +74,7 @@ struct RunFigures {
     std::optional<double> endSpeed;        // m/s, the largest in the last second (SpeedMeter); null: not measured
     std::optional<SleepTime> sleep;        // null: sleeping is off
     std::optional<EnergyRise> energyRise;  // null: the scene is not closed
+    std::optional<ErrorFigures> errors;    // null: the world does not measure them
     double accuracy = 0;                   // the scene's figure
     std::vector<double> accuracies;        // where `accuracy` is the median of several runs: theirs
     int nonFinite = 0;                     // bodies

@@ -18,6 +18,7 @@ Result<std::unique_ptr<SceneWorld>> SceneWorld::Create(const Scene& scene, const
     SystemSettings settings;
     settings.solver = input.solver;
     settings.narrowPhase = input.narrowPhase;
+    settings.measuresErrors = input.measuresErrors;
     settings.sleep.enabled = scene.sleeping;
     if (scene.adjust) scene.adjust(settings);
     if (input.sleeping) settings.sleep.enabled = *input.sleeping;

@@ -23,6 +23,7 @@ struct SceneInput {
     uint64_t seed = 1;
     SolverSettings solver;  // the default effort
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
+    bool measuresErrors = false;   // see SystemSettings
     ShapePtr shape;                // of the drop scenes: what falls
     ShapePtr ground;               // of drop_onto: what it falls onto
     int count = 50;                // bodies of the drop scenes, >= 1

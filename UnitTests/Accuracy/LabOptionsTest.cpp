@@ -25,6 +25,18 @@ TEST(LabOptions, AllAreTaken) {
     EXPECT_EQ(command.Value().table, "Docs/Accuracy.md");
 }
 
+TEST(LabOptions, SoakIsOneLongRunOfItsOwn) {
+    const auto command = ParseLabCommand({"--soak"});
+    ASSERT_TRUE(command);
+    ASSERT_EQ(command.Value().lab.scenes.size(), 1u);
+    EXPECT_EQ(command.Value().lab.scenes[0]->FullName(), "soak");
+    EXPECT_EQ(command.Value().lab.settings, std::vector<Setting>{Setting{}});
+    EXPECT_FALSE(command.Value().lab.isQuick);
+    EXPECT_FALSE(ParseLabCommand({"--soak", "--quick"}));
+    EXPECT_FALSE(ParseLabCommand({"--soak", "--scene", "incline"}));
+    EXPECT_FALSE(ParseLabCommand({"--soak", "--baseline", "x.json"}));
+}
+
 TEST(LabOptions, AnUnknownSceneIsAnsweredWithTheNearest) {
     const auto command = ParseLabCommand({"--scene", "inclin"});
     ASSERT_FALSE(command);

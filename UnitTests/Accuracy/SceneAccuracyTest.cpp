@@ -2,16 +2,13 @@
 // the scene is; the list is complete.
 #include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
 #include <Fulcrum/PerformanceTest/Accuracy/RunRecord.h>
+#include <Fulcrum/UnitTests/Accuracy/LabSceneNames.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
 namespace fulcrum::accuracy {
-
-// For gtest's messages.
-static void PrintTo(const LabScene& scene, std::ostream* stream) { *stream << scene.FullName(); }
 
 namespace {
 
@@ -35,13 +32,6 @@ TEST_P(LabSceneTest, IsExactAtTheFinestQuickSetting) {
     EXPECT_FALSE(run.observed.empty());
     for (const double value : run.observed) EXPECT_TRUE(std::isfinite(value));
     for (const std::string& gate : run.failedGates) EXPECT_NE(gate, "every pose is finite");
-}
-
-std::string TestName(const testing::TestParamInfo<LabScene>& tested) {
-    std::string name = tested.param.FullName();
-    std::replace_if(
-        name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
-    return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LabSceneTest, testing::ValuesIn(AllLabScenes()), TestName);

@@ -45,6 +45,7 @@ BodySettings RandomBody(Values& values) {
     if (values.Chance(0.2f)) settings.category = 1u + values.Below(7), settings.mask = values.Below(8);
     settings.userData = values.Below(1000);
     settings.reportsContacts = settings.userData % 4 != 0;
+    if (settings.userData % 16 == 3) settings.penetrationTarget = 0.002f;
     if (values.Style().continuous && values.Chance(0.2f)) settings.continuous = values.One<ContinuousCollision>(3);
     if (values.Style().sensors && values.Chance(0.15f)) {
         settings.isSensor = true;

@@ -76,6 +76,7 @@ void FillCommon(JointSettings& settings, const Twin& twin, Values& values, const
     if (values.Chance(0.1f)) settings.substeps = static_cast<int>(values.Below(20));
     if (values.Chance(0.1f)) settings.velocityIterations = static_cast<int>(values.Below(10));
     if (values.Chance(0.1f)) settings.massOverride = RandomMassOverride(values);
+    if (settings.bodyA.index % 8 == 3) settings.errorTarget = 0.002f;
 }
 
 void FillKind(PointJointSettings&, Values&) {}

@@ -162,6 +162,12 @@ void CheckReports(const Twin& twin, Complaints& complaints) {
     complaints.Finite("report: largest penetration", 0, report.largestPenetration);
     complaints.Finite("report: largest joint error", 0, report.largestJointError);
     complaints.Finite("report: largest joint angle", 0, report.largestJointAngle);
+    const StepErrors& errors = report.errors;
+    complaints.Finite("report: energy change", 0, errors.energyChange);
+    complaints.Finite("report: energy gain", 0, errors.energyGain);
+    complaints.Finite("report: momentum error", 0, errors.momentumError);
+    complaints.Finite("report: angular momentum error", 0, errors.angularMomentumError);
+    complaints.Finite("report: push energy", 0, errors.pushEnergy);
     for (const SensorEvent& event : twin.system->SensorEvents())
         complaints.Holds("sensor event: time", event.sensor.index, event.time >= 0 && event.time <= 1);
 }

@@ -59,6 +59,31 @@ TEST(Simulation, MeasuresARun) {
     EXPECT_NEAR(figures.energyAtStart, 9.81 * 1000 * 200, 100);
 }
 
+// A tower of cubes falls by nothing: it is pushed by nothing, and gains nothing; who did most is named.
+TEST(Simulation, ReportsErrorsWhereTheyAreMeasured) {
+    SceneInput input;
+    input.measuresErrors = true;
+    const Scene& scene = *FindScene("tower");
+    auto world = SceneWorld::Create(scene, input);
+    ASSERT_TRUE(world);
+    const auto run = Simulate(*world.Value(), 0, 60, 1.0 / 60, 1, [] {});
+    ASSERT_TRUE(run);
+    ASSERT_TRUE(run.Value().errors);
+    const ErrorFigures& errors = *run.Value().errors;
+    EXPECT_EQ(errors.effort.whose.substr(0, 4), "box ");
+    EXPECT_GT(errors.effort.value, 4);
+    EXPECT_EQ(errors.jointError.whose, "");
+    EXPECT_NEAR(errors.energyChange, run.Value().energyAtEnd - run.Value().energyAtStart, 1);
+    const std::string text = ReportText(ReportLines(scene, run.Value(), 1));
+    EXPECT_NE(text.find("Errors of a step, largest"), std::string::npos) << text;
+    EXPECT_EQ(ReportJson("tower", run.Value(), 1)["errors"]["substeps"]["whose"], errors.effort.whose);
+    const auto plain = Build("tower");
+    const auto without = Simulate(*plain, 0, 2, 1.0 / 60, 1, [] {});
+    ASSERT_TRUE(without);
+    EXPECT_FALSE(without.Value().errors);
+    EXPECT_FALSE(ReportJson("tower", without.Value(), 1).contains("errors"));
+}
+
 TEST(Simulation, ReportsForPeopleAndForPrograms) {
     const auto world = Build("tower");
     ASSERT_TRUE(world);

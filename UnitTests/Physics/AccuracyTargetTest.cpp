@@ -1,0 +1,344 @@
+// AccuracyTarget: targets of single bodies and joints, drift, and what accuracy for one structure costs among many
+// bodies that need none.
+#include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace fulcrum::testing {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+SystemSettings WithoutTargets() {
+    SystemSettings settings = NoSleep();
+    settings.accuracy.penetration = kInfinity;
+    return settings;
+}
+
+// A cube of 1 m and one of 40 times its mass on it. Returns the lower one.
+BodyId AddLoaded(TestWorld& world, double x, float target) {
+    const BodyId lower =
+        world.Add({.shape = CubeOf(0.5f), .position = {x, 0.5, 0}, .mass = 1000, .penetrationTarget = target});
+    world.Add({.shape = CubeOf(0.5f), .position = {x, 1.5, 0}, .mass = 40'000});
+    return lower;
+}
+
+std::vector<IslandEffortReport> EffortsOf(TestWorld& world) {
+    std::vector<IslandEffortReport> efforts;
+    world.System().VisitEfforts([&](const IslandEffortReport& effort) { efforts.push_back(effort); });
+    return efforts;
+}
+
+// Three alike; the target of one makes its island alone stiffer: by need 2 n, sinks fall with the square of substeps.
+TEST(AccuracyTarget, OfABodyIsItsOwn) {
+    TestWorld world(WithoutTargets());
+    world.AddFloor();
+    AddLoaded(world, 0, 0);
+    const float target = 0.001f;  // of half an edge: 0.5 mm
+    const BodyId exact = AddLoaded(world, 10, target), loose = AddLoaded(world, 20, 0);
+    world.Run(5);
+    const auto sinkOf = [&](BodyId id) { return 0.5 - world.PositionOf(id).y(); };
+    const std::vector<IslandEffortReport> efforts = EffortsOf(world);
+    ASSERT_EQ(efforts.size(), 1u);
+    EXPECT_EQ(efforts[0].culprit, exact);
+    EXPECT_EQ(efforts[0].bodies, 2u);
+    EXPECT_GT(efforts[0].substeps, SolverSettings{}.substeps);
+    EXPECT_LT(sinkOf(exact), 0.5 * target);
+    EXPECT_GT(sinkOf(loose), 2 * 0.5 * target);
+    // Taken away, it is solved as the others are.
+    ASSERT_TRUE(world.Bodies().SetPenetrationTarget(exact, 0));
+    EXPECT_EQ(world.Bodies().GetPenetrationTarget(exact), 0);
+    world.Run(5);
+    EXPECT_TRUE(EffortsOf(world).empty());
+    EXPECT_NEAR(sinkOf(exact), sinkOf(loose), 1e-5);
+}
+
+// A body that may sink deeper than the world's target costs less than the others.
+TEST(AccuracyTarget, OfABodyMayBeLooserThanTheWorlds) {
+    SystemSettings settings = NoSleep();
+    settings.accuracy.penetration = 0.001f;
+    TestWorld world(settings);
+    world.AddFloor();
+    AddLoaded(world, 0, 0.1f);
+    const BodyId usual = AddLoaded(world, 10, 0);
+    world.Run(5);
+    const std::vector<IslandEffortReport> efforts = EffortsOf(world);
+    ASSERT_EQ(efforts.size(), 1u);
+    EXPECT_EQ(efforts[0].culprit, usual);
+}
+
+TEST(AccuracyTarget, BadOnesAreRefused) {
+    TestWorld world;
+    const BodyId body = world.Add({.shape = CubeOf(0.5f)}),
+                 other = world.Add({.shape = CubeOf(0.5f), .position = {3, 0, 0}});
+    PointJointSettings joint = Of<PointJointSettings>(Between(body, other, {1.5, 0, 0}));
+    const JointId id = Join(world, joint);
+    for (const float bad : {-1.0f, -kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
+        EXPECT_FALSE(world.System().Bodies().Create({.shape = CubeOf(0.5f), .penetrationTarget = bad}));
+        EXPECT_FALSE(world.Bodies().SetPenetrationTarget(body, bad));
+        joint.errorTarget = bad;
+        EXPECT_FALSE(JointsOf(world).Create(joint));
+        EXPECT_FALSE(JointsOf(world).SetErrorTarget(id, bad));
+        SystemSettings settings;
+        settings.accuracy.drift = bad;
+        EXPECT_FALSE(world.System().SetSettings(settings));
+    }
+    EXPECT_FALSE(world.Bodies().SetPenetrationTarget({77, 0}, 0.1f));
+    EXPECT_FALSE(JointsOf(world).SetErrorTarget({77, 0}, 0.1f));
+    EXPECT_EQ(world.Bodies().GetPenetrationTarget(body), 0);
+    EXPECT_EQ(JointsOf(world).GetErrorTarget(id), 0);
+}
+
+// Eight balls on ball joints between two posts, with a weight in the middle; iterations alone. Returns the joints.
+std::vector<JointId> AddRope(TestWorld& world, double z) {
+    std::vector<JointId> joints;
+    BodyId last = AddHook(world, {-4, 8, z});
+    for (int i = 0; i < 8; ++i) {
+        const double x = -3.5 + i;
+        const BodyId ball = world.Add({.shape = SphereOf(0.2f),
+                                       .position = {x, 8, z},
+                                       .mass = i == 4 ? 200.0f : 10.0f,
+                                       .linearDamping = 1,
+                                       .angularDamping = 1});
+        joints.push_back(Join(world, Of<PointJointSettings>(Between(last, ball, {x - 0.5, 8, z}))));
+        last = ball;
+    }
+    joints.push_back(Join(world, Of<PointJointSettings>(Between(last, AddHook(world, {4, 8, z}), {4, 8, z}))));
+    return joints;
+}
+
+double LargestGap(TestWorld& world, const std::vector<JointId>& joints) {
+    double largest = 0;
+    for (const JointId id : joints) largest = std::max(largest, double{JointsOf(world).GetError(id).distance});
+    return largest;
+}
+
+TEST(AccuracyTarget, OfAJointIsItsOwn) {
+    SystemSettings settings = WithoutTargets();
+    settings.exactJointLoad = kInfinity;
+    TestWorld world(settings);
+    const std::vector<JointId> usual = AddRope(world, 0), exact = AddRope(world, 5);
+    const float target = 0.0005f;
+    for (const JointId id : exact) ASSERT_TRUE(JointsOf(world).SetErrorTarget(id, target));
+    world.Run(8);
+    const std::vector<IslandEffortReport> efforts = EffortsOf(world);
+    ASSERT_EQ(efforts.size(), 1u);
+    EXPECT_GT(efforts[0].substeps, SolverSettings{}.substeps);
+    EXPECT_EQ(efforts[0].bodies, 8u);
+    EXPECT_LT(LargestGap(world, exact), target);
+    EXPECT_GT(LargestGap(world, usual), 2 * target);
+}
+
+TEST(AccuracyTarget, SnapshotsHaveThem) {
+    SystemSettings settings = WithoutTargets();
+    settings.exactJointLoad = kInfinity;
+    settings.accuracy.drift = 0.01f;
+    settings.measuresErrors = true;
+    TestWorld world(settings);
+    world.AddFloor();
+    const BodyId loaded = AddLoaded(world, 10, 0.001f);
+    const std::vector<JointId> rope = AddRope(world, 0);
+    ASSERT_TRUE(JointsOf(world).SetErrorTarget(rope[3], 0.002f));
+    world.Steps(60);
+    std::vector<std::byte> bytes;
+    ASSERT_TRUE(world.System().SaveSnapshot(bytes));
+    world.Steps(60);
+    const uint64_t hash = world.System().HashState();
+    ASSERT_TRUE(world.Bodies().SetPenetrationTarget(loaded, 0));
+    ASSERT_TRUE(JointsOf(world).SetErrorTarget(rope[3], 0));
+    world.Steps(10);
+    ASSERT_TRUE(world.System().RestoreSnapshot(bytes));
+    EXPECT_EQ(world.Bodies().GetPenetrationTarget(loaded), 0.001f);
+    EXPECT_EQ(JointsOf(world).GetErrorTarget(rope[3]), 0.002f);
+    world.Steps(60);
+    EXPECT_EQ(world.System().HashState(), hash);
+    EXPECT_TRUE(world.Report().errors.areMeasured);
+}
+
+// A rope that swings evenly as a whole, 60 degrees to each side: its anchors part at some speed, which substeps make
+// less. The target is met over most of the time; where it swings through fastest, within twice of it.
+TEST(AccuracyTarget, DriftIsHeldToWhatIsAsked) {
+    struct Swing {
+        double mean = 0, most = 0;  // m/s, of the largest of all joints
+        int substeps = 0;           // at the end
+    };
+    const auto swing = [](float drift) {
+        SystemSettings settings = WithoutTargets();
+        settings.exactJointLoad = kInfinity;
+        settings.accuracy.drift = drift;
+        TestWorld world(settings);
+        const Vector3 down(std::sin(1.0f), -std::cos(1.0f), 0);
+        const auto at = [&](double along) { return Position(Position(0, 8, 0) + down.cast<double>() * along); };
+        BodyId last = AddHook(world, at(0));
+        std::vector<BodyId> balls;
+        for (int i = 0; i < 8; ++i) {
+            const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = at(0.5 + i), .mass = 10});
+            Join(world, Of<PointJointSettings>(Between(last, ball, at(i))));
+            balls.push_back(last = ball);
+        }
+        Swing result;
+        constexpr int kSteps = 360;
+        for (int step = -60; step < kSteps; ++step) {
+            world.Step();
+            double fastest = 0;
+            for (size_t i = 1; i < balls.size(); ++i) {
+                const auto anchor = [&](BodyId id, float along) {
+                    const Vector3 arm = Rotate(world.Bodies().GetPose(id).rotation, Vector3(down * along));
+                    return Vector3(world.VelocityOf(id) + Cross<float>(world.Bodies().GetAngularVelocity(id), arm));
+                };
+                fastest =
+                    std::max(fastest, double{Length(Vector3(anchor(balls[i], -0.5f) - anchor(balls[i - 1], 0.5f)))});
+            }
+            if (step < 0) continue;
+            result.mean += fastest / kSteps;
+            result.most = std::max(result.most, fastest);
+        }
+        result.substeps = world.Report().islandsWithMoreEffort > 0 ? world.Report().mostEffort[0].substeps : 4;
+        return result;
+    };
+    const Swing usual = swing(kInfinity);
+    EXPECT_GT(usual.mean, 0.03);
+    EXPECT_EQ(usual.substeps, 4);
+    for (const float drift : {0.03f, 0.01f, 0.005f}) {
+        const Swing held = swing(drift);
+        EXPECT_LT(held.mean, drift);
+        EXPECT_GT(held.substeps, 4) << drift;
+    }
+}
+
+// Where the motion is steady efforts are, too: a rope that turns about its end as a whole, without gravity.
+TEST(AccuracyTarget, EffortsForDriftDoNotComeAndGo) {
+    for (const float drift : {0.03f, 0.01f, 0.003f, 0.001f}) {
+        SystemSettings settings = Weightless();
+        settings.exactJointLoad = kInfinity;
+        settings.accuracy.drift = drift;
+        TestWorld world(settings);
+        BodyId last = AddHook(world, {0, 0, 0});
+        const float w = 4;  // rad/s
+        for (int i = 0; i < 8; ++i) {
+            const BodyId ball = world.Add({.shape = SphereOf(0.2f),
+                                           .position = {0.5 + i, 0, 0},
+                                           .linearVelocity = {0, w * (0.5f + static_cast<float>(i)), 0},
+                                           .angularVelocity = {0, 0, w},
+                                           .mass = 10});
+            Join(world, Of<PointJointSettings>(Between(last, ball, {double(i), 0, 0})));
+            last = ball;
+        }
+        world.Run(5);
+        const int substeps = world.Report().mostEffort[0].substeps;
+        EXPECT_GT(substeps, 4) << drift;
+        for (int step = 0; step < 600; ++step) {
+            world.Step();
+            ASSERT_EQ(world.Report().mostEffort[0].substeps, substeps) << drift << " step " << step;
+        }
+    }
+}
+
+// ---- One structure among 1000 boxes
+
+struct Among {
+    Among(const SystemSettings& settings, const std::function<void(Among&)>& addStructure, uint32_t threads = 1)
+        : world(settings, threads) {
+        world.AddFloor();
+        for (int i = 0; i < 500; ++i) {
+            const double x = -40 + 2.5 * (i % 25), z = 10 + 2.5 * (i / 25);
+            world.Add({.shape = CubeOf(0.5f), .position = {x, 0.5, z}});
+            world.Add({.shape = CubeOf(0.5f), .position = {x, 1.5, z}});
+        }
+        addStructure(*this);
+    }
+    // m
+    double Error() {
+        double error = LargestGap(world, joints);
+        if (!bricks.empty()) {
+            // How much too low the top is, by layer.
+            double lowest = std::numeric_limits<double>::infinity();
+            for (const BodyId id : bricks) lowest = std::min(lowest, world.PositionOf(id).y());
+            error = std::max(error, (top - lowest) / layers);
+        }
+        return error;
+    }
+    // Substeps times bodies that take them, of a step.
+    double Work() {
+        const StepReport& report = world.Report();
+        const int substeps = world.System().Settings().solver.substeps;
+        double work = double(report.awakeBodies) * substeps;
+        for (const IslandEffortReport& effort : EffortsOf(world))
+            work += double(effort.bodies) * (effort.substeps - substeps);
+        return work;
+    }
+    TestWorld world;
+    std::vector<JointId> joints;
+    std::vector<BodyId> bricks;  // of the top layer
+    double top = 0;
+    int layers = 1;
+};
+
+// 16 links of 1 kg and a ball of 100 kg, swung from the horizontal.
+void AddHeavyChain(Among& to) {
+    BodyId last = AddHook(to.world, {0, 12, 0});
+    for (int i = 0; i < 17; ++i) {
+        const bool isBall = i == 16;
+        const BodyId link = to.world.Add({.shape = SphereOf(isBall ? 0.25f : 0.1f),
+                                          .position = {0.25 + 0.5 * i, 12, 0},
+                                          .mass = isBall ? 100.0f : 1.0f});
+        to.joints.push_back(Join(to.world, Of<PointJointSettings>(Between(last, link, {0.5 * i, 12, 0}))));
+        last = link;
+    }
+}
+
+// Ten layers of five bricks of 0.5 x 0.25 x 0.25 m, in a running bond of a quarter of their length.
+void AddWall(Among& to) {
+    to.layers = 10;
+    for (int layer = 0; layer < to.layers; ++layer)
+        for (int i = 0; i < 5; ++i) {
+            const BodyId brick = to.world.Add({.shape = BoxOf(0.25f, 0.125f, 0.125f),
+                                               .position = {0.5 * i + 0.125 * (layer % 2), 0.125 + 0.25 * layer, 0},
+                                               .density = 2000});
+            if (layer + 1 == to.layers) to.bricks.push_back(brick);
+        }
+    to.top = 0.125 + 0.25 * (to.layers - 1);
+}
+
+SystemSettings Fast(bool isTargeted) {
+    SystemSettings settings = WithoutTargets();
+    settings.solver = SolverSettings::Fast();
+    if (isTargeted) {
+        settings.accuracy.penetration = 0.004f;  // of half an edge of 0.31 m, a brick's by its mass: 0.6 mm
+        settings.accuracy.jointError = 0.001f;
+    } else {
+        settings.exactJointLoad = kInfinity;
+    }
+    return settings;
+}
+
+// The error of the structure over 2 s after 2 s, at 1.2 times the work without it; efforts do not come and go.
+void ExpectOneAmongMany(const std::function<void(Among&)>& add) {
+    Among plain(Fast(false), add), targeted(Fast(true), add), two(Fast(true), add, 2);
+    double without = 0, error = 0, least = 1e9, most = 0, work = 0;
+    for (int step = 0; step < 240; ++step) {
+        for (Among* world : {&plain, &targeted, &two}) world->world.Step();
+        ASSERT_EQ(targeted.world.System().HashPoses(), two.world.System().HashPoses()) << step;
+        work += targeted.Work() / plain.Work() / 240;
+        if (step < 120) continue;
+        without = std::max(without, plain.Error());
+        error = std::max(error, targeted.Error());
+        const std::vector<IslandEffortReport> efforts = EffortsOf(targeted.world);
+        ASSERT_EQ(efforts.size(), 1u) << step;
+        least = std::min<double>(least, efforts[0].substeps);
+        most = std::max<double>(most, efforts[0].substeps);
+    }
+    EXPECT_GT(without, 0.001);
+    EXPECT_LT(error, 0.001);
+    EXPECT_EQ(least, most) << "efforts come and go";
+    EXPECT_LT(work, 1.2);
+}
+
+TEST(AccuracyTarget, AHeavyChainAmongAThousandBoxesMeetsAMillimeter) { ExpectOneAmongMany(AddHeavyChain); }
+TEST(AccuracyTarget, AWallAmongAThousandBoxesMeetsAMillimeter) { ExpectOneAmongMany(AddWall); }
+
+}  // namespace
+}  // namespace fulcrum::testing
