@@ -43,7 +43,7 @@ struct SupportPair {
     // the small one, down to the rounding errors of the large one.
     float DepthTolerance() const {
         constexpr float kTolerance = 3e-5f, kRounding = 1e-6f;
-        const float smaller = 8 * Min(a.OuterRadius(), b.OuterRadius()), size = Size();
+        const float smaller = 32 * Min(a.OuterRadius(), b.OuterRadius()), size = Size();
         return Max(kTolerance * Min(size, smaller), kRounding * size) + 1e-12f;
     }
 

@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xa26a604e1762f1c2ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x8f7c0d3b57031a43ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x7f651c3bbca415dfull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0xa7de5596f1fcbf95ull;
+constexpr uint64_t kGoldenHash = 0xe9251ad7dfb617d7ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x394c63dbab82e046ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xd62ec815b8186a65ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x4899eb60e4ffbab0ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
