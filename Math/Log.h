@@ -2,7 +2,6 @@
 // standard error, or to a handler of the program. For all worlds, from any thread.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <cstdio>
 
@@ -16,16 +15,14 @@ enum class LogLevel : uint8_t {
 // `message` is a line without its end, valid during the call. It must not throw, nor call a world.
 using LogHandler = void (*)(LogLevel level, const char* message);
 
-inline std::atomic<LogHandler>& TheLogHandler() {
-    static std::atomic<LogHandler> handler{nullptr};
-    return handler;
-}
+// Read and written by the functions below only, atomically. The standard's atomics would take long to compile.
+inline LogHandler theLogHandler = nullptr;
 
 // Null: standard error again, each line after "fulcrum: ".
-inline void SetLogHandler(LogHandler handler) { TheLogHandler().store(handler, std::memory_order_release); }
+inline void SetLogHandler(LogHandler handler) { __atomic_store_n(&theLogHandler, handler, __ATOMIC_RELEASE); }
 
 inline void Log(LogLevel level, const char* message) {
-    if (const LogHandler handler = TheLogHandler().load(std::memory_order_acquire)) handler(level, message);
+    if (const LogHandler handler = __atomic_load_n(&theLogHandler, __ATOMIC_ACQUIRE)) handler(level, message);
     else std::fprintf(stderr, "fulcrum: %s\n", message);
 }
 

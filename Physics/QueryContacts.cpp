@@ -26,13 +26,16 @@ void Add(const Pieces& pieces, const WorldContact& of, const Manifold& manifold,
          std::vector<WorldContact>& contacts) {
     WorldContact contact = of;
     contact.childOfQuery = pieces.child;
-    contact.normal = -Rotate(pieces.pose.rotation, manifold.normal);
+    contact.normal = Normalized(Vector3(-Rotate(pieces.pose.rotation, manifold.normal)), Vector3::Zero());
+    // Shapes of extreme sizes, or far apart, can bring any pair function beyond the floats.
+    if (contact.normal.isZero(0) || !IsFinite(contact.normal)) return;
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& point = manifold.points[i];
         if (!(point.separation <= maxSeparation)) continue;
-        contact.points[contact.pointCount++] = {
-            pieces.pose.Transform(point.positionOnA + manifold.normal * point.separation),
-            pieces.pose.Transform(point.positionOnA), point.separation};
+        const Position onBody = pieces.pose.Transform(point.positionOnA + manifold.normal * point.separation),
+                       onQuery = pieces.pose.Transform(point.positionOnA);
+        if (IsFinite(onBody) && IsFinite(onQuery))
+            contact.points[contact.pointCount++] = {onBody, onQuery, point.separation};
     }
     if (contact.pointCount > 0) contacts.push_back(contact);
 }
@@ -79,8 +82,9 @@ void QueryInterface::CollideShape(const PlacedShape& shape, float maxSeparation,
     if (!scope) return;
     if (!shape.shape || !(shape.shape->IsConvex() || shape.shape->IsCompound()))
         return ReportMisuse({ErrorCode::Unsupported, "CollideShape needs a convex shape or a compound"});
-    const Pose center = CenterPoseOf(*shape.shape, shape.pose);
-    if (!IsFinite(center.position) || !IsFinite(center.rotation) || !(maxSeparation >= 0)) return;
+    if (!IsRotation(shape.pose.rotation) || !(maxSeparation >= 0)) return;
+    const Pose center = CenterPoseOf(*shape.shape, {shape.pose.position, Normalized(shape.pose.rotation)});
+    if (!IsFinite(center.position)) return;
     const ColliderSearch search(world_, filter);
     const NarrowPhaseMethod method = world_.settings.narrowPhase;
     const Bounds bounds = Inflated(BoundsAbout(search.Origin(), *shape.shape, center), maxSeparation);

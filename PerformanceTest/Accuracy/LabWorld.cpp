@@ -17,7 +17,7 @@ LabWorld::LabWorld(LabRun& run, const Vector3& gravity, void (*change)(SystemSet
     settings.gravity = gravity;
     settings.sleep.enabled = false;
     change(settings);
-    system_ = std::move(PhysicsSystem::Create(settings, run.jobs).Value());
+    system_ = PhysicsSystem::Create(settings, run.jobs).Value();
 }
 
 LabWorld::~LabWorld() {

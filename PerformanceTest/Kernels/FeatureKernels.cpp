@@ -118,7 +118,7 @@ std::unique_ptr<PhysicsSystem> Build(const Feature& feature, const ContactListen
     SystemSettings settings;
     settings.sleep.enabled = false;
     feature.world(settings);
-    std::unique_ptr<PhysicsSystem> system = std::move(PhysicsSystem::Create(settings).Value());
+    std::unique_ptr<PhysicsSystem> system = PhysicsSystem::Create(settings).Value();
     if (feature.listens) system->SetContactListener(listener);
     if (feature.isOnFloor)
         (void)system->Bodies()

@@ -18,7 +18,7 @@ constexpr double kStep = 1.0 / 60;
 std::unique_ptr<PhysicsSystem> MakeHeap(int64_t count) {
     SystemSettings settings;
     settings.sleep.enabled = false;
-    std::unique_ptr<PhysicsSystem> system = std::move(PhysicsSystem::Create(settings).Value());
+    std::unique_ptr<PhysicsSystem> system = PhysicsSystem::Create(settings).Value();
     const auto add = [&](const ShapePtr& shape, MotionType motion, const Position& position, const Quaternion& q) {
         const auto id =
             system->Bodies().Create({.shape = shape, .motion = motion, .position = position, .rotation = q});

@@ -6,7 +6,6 @@
 
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -43,7 +42,7 @@ struct ForceField {
     FieldRegion region{};
     Vector3 acceleration = Vector3::Zero();  // m/s2, the same everywhere
     // m/s2 at a place, on top of that; for planets, vortices and the like. A pure function of the position.
-    std::function<Vector3(const Position&)> accelerationAt{};
+    Function<Vector3(const Position&)> accelerationAt{};
 };
 
 struct Fields {

@@ -137,10 +137,10 @@ private:
         return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kTurnFraction * depth;
     }
 
-    // The limits of effort are per candidate: the order in which the trees find candidates must not matter.
+    // Restarts are counted per candidate: the order in which the trees find candidates must not matter. Only the limit
+    // of triangles is that of the whole cast, which bounds its time.
     void CastAnew(uint32_t other, const ShapeCaster& straight) {
         restarts_ = 0;
-        triangles_ = 0;
         CastAgainst(other, straight);
     }
 

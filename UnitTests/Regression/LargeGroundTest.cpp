@@ -114,7 +114,7 @@ TEST_P(LargeGround, IsMeasuredExactly) {
 TEST(LargeGroundInAWorld, CarriesACapsuleAboveItsCenter) {
     for (int turn = 0; turn < 32; ++turn) {
         SCOPED_TRACE(turn);
-        const std::unique_ptr<PhysicsSystem> world = std::move(PhysicsSystem::Create().Value());
+        const std::unique_ptr<PhysicsSystem> world = PhysicsSystem::Create().Value();
         BodyInterface& bodies = world->Bodies();
         bodies.Create({.shape = SlabOf(3000, false), .motion = MotionType::Static, .position = {0, -1, 0}}).Value();
         RandomPoses random(100 + static_cast<uint32_t>(turn));

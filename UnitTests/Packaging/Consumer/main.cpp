@@ -8,7 +8,7 @@
 using namespace fulcrum;
 
 int main() {
-    auto world = std::move(PhysicsSystem::Create().Value());
+    auto world = PhysicsSystem::Create().Value();
     BodyInterface& bodies = world->Bodies();
 
     const ShapePtr floor = Box::Create({20, 1, 20}).Value();  // half extents, m
