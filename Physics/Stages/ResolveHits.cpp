@@ -115,7 +115,13 @@ private:
         const bool lostPartner = places[1] != SweepStore::kNone && Swept(places[1]).changed;
         if (mayChange && !lostPartner) return kept_.push_back(hit);
         const bool isUndecided = hit.pointCount == 0 || lostPartner;
-        if (hit.isBlocked || !impact.isFinite || (isLast_ && isUndecided)) {
+        bool isLast = isLast_;
+        for (const uint32_t place : places)
+            if (!lostPartner && place != SweepStore::kNone && bodies_.CanMove(Swept(place).body)) {
+                Swept(place).CountHit(hit.time);
+                isLast |= Swept(place).IsCrowdedWithHits();
+            }
+        if (hit.isBlocked || !impact.isFinite || (isLast && isUndecided)) {
             // With its arriving velocity: an impulse applied to only one of the two would create energy.
             Wait(places[0], hit.time, impact, 0, impact.arrivingLinear[0], impact.arrivingAngular[0]);
         } else if (lostPartner) {
@@ -128,13 +134,13 @@ private:
                 if (places[s] != SweepStore::kNone && !impact.sweeps[s].waits)
                     Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
         } else {
-            Bounce(hit, impact, places);
+            Bounce(hit, impact, places, isLast);
         }
     }
 
     // Both continue with the velocities after the hit. If no point approaches, the displacement by the solver differs
-    // from the velocities.
-    void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2]) {
+    // from the velocities. isLast: they stay where they are until the next step.
+    void Bounce(const SweepHit& hit, const Impact& impact, const uint32_t (&places)[2], bool isLast) {
         WakeBody(stores_, hit.other);
         report_.sweptHits += impact.bounces;
         if (sweeps_.reportsHits && impact.bounces) Report(hit, impact);
@@ -147,7 +153,7 @@ private:
             }
             bodies_.masses[body] = impact.masses[s];
             bodies_.dynamics[body].slowSeconds = 0;
-            if (isLast_) Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
+            if (isLast) Wait(places[s], hit.time, impact, s, impact.linear[s], impact.angular[s]);
             else Continue(places[s], hit.time, impact, s);
         }
     }

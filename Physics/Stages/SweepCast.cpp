@@ -22,6 +22,10 @@ constexpr float kFreeFraction = 0.5f, kDepthFraction = 0.25f, kFastDepthFraction
 // Limit of triangles tested by a cast of a shape as large as the surface: beyond it the cast is left to the contacts,
 // since its time would grow with the square of the surface's size.
 constexpr size_t kMostTriangles = 20000;
+// rad: a shape that turns further in a step, four times around, is cast without its rotation. Its points pass every
+// place within its reach several times, and each advance of such a cast is a tiny part of the step: it would take all
+// its iterations at every triangle near by and then stop the body where it began.
+constexpr float kMostTurn = 25;
 // Minimum thickness, as a fraction of the size.
 constexpr float kLeastThickness = 0.01f;
 
@@ -133,7 +137,7 @@ private:
     // by a fraction of the depth that counts, or always.
     static bool TurnMatters(const ColliderShape& piece, const Sweep& sweep, float radius, float depth, float start) {
         constexpr float kTurnFraction = 0.25f;
-        if (IsBall(piece) || sweep.turn.isZero(0)) return false;
+        if (IsBall(piece) || sweep.turn.isZero(0) || !(Length(sweep.turn) <= kMostTurn)) return false;
         return sweep.turns || Length(sweep.TurnRate()) * (1 - start) * radius > kTurnFraction * depth;
     }
 
@@ -252,11 +256,12 @@ private:
         const float speed = Length(linear) + Length(sweep_.TurnRate()) * cast_->OuterRadius() +
                             Length(theirSweep.TurnRate()) * shape.OuterRadius();
         SweepHit hit = HitOf(pieces, theirSweep);
-        for (int i = 0; i < kMostSteps && triangles_ <= kMostTriangles; ++i) {
+        for (int i = 0; i < kMostSteps; ++i) {
+            if (triangles_ > kMostTriangles) return;
             time += depth / speed;
-            if (!(time < std::min(1.0f, best_.time))) return;
-            const Push push = FindPoints(motion, linear, theirSweep, time, depth, hit);
             hit.time = time;
+            if (!(time < 1 && ComesBefore(hit))) return;
+            const Push push = FindPoints(motion, linear, theirSweep, time, depth, hit);
             if (hit.pointCount == 0 && restarts_++ < kMostRestarts) return CastAgainst(pieces.other, straight, time);
             if (!(push.speed > 0 && push.depth > (push.speed > depth ? kFastDepthFraction * depth : depth))) continue;
             if (Behaves(hit)) Take(hit);

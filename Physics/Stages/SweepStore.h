@@ -28,6 +28,22 @@ struct Sweep {
     bool isCut = false;    // something was hit
     bool waits = false;    // stays at its pose at `from` until the end of the step, and keeps its velocity
     bool changed = false;  // changed in the current round
+    // Hits since the time of the first of them, of those that follow each other closely (CountHit).
+    int crowdedHits = 0;
+    float crowdedSince = 0;
+
+    // A body among shapes far larger than its motion, or wedged between them, may be hit again and again while time
+    // hardly advances. After this many hits in a thousandth of a step it stays where it is until the next step.
+    static constexpr int kMostCrowdedHits = 16;
+    void CountHit(float time) {
+        constexpr float kCrowded = 1e-3f;  // of a step
+        if (!(time - crowdedSince <= kCrowded)) {
+            crowdedSince = time;
+            crowdedHits = 0;
+        }
+        ++crowdedHits;
+    }
+    bool IsCrowdedWithHits() const { return crowdedHits >= kMostCrowdedHits; }
 
     float PartAt(float time) const { return from < 1 ? (time - from) / (1 - from) : 0.0f; }
     Position PositionAt(float time) const {
