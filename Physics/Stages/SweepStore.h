@@ -34,7 +34,7 @@ struct Sweep {
 
     // A body among shapes far larger than its motion, or wedged between them, may be hit again and again while time
     // hardly advances. After this many hits in a thousandth of a step it stays where it is until the next step.
-    static constexpr int kMostCrowdedHits = 16;
+    static constexpr int kMostCrowdedHits = 8;
     void CountHit(float time) {
         constexpr float kCrowded = 1e-3f;  // of a step
         if (!(time - crowdedSince <= kCrowded)) {

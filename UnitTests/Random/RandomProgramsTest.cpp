@@ -54,6 +54,7 @@ TEST(RandomPrograms, InvariantsHoldWhateverAUserCalls) {
 // Seeds of programs whose failures led to fixes, while the same seeds give the same programs: whoever changes what is
 // drawn replaces them by tests of their own, as has been done for those before (UnitTests/Regression).
 TEST(RandomPrograms, InvariantsHoldForSeedsThatOnceFailed) {
+    if (kIsSanitized) GTEST_SKIP() << "takes minutes";
     const uint32_t seeds[] = {
         32006483,  // two bodies far larger than the height field between them hit each other again and again: 2.6 s
     };
