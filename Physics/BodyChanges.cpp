@@ -36,13 +36,12 @@ void Refilter(WorldState& world, uint32_t body) {
     RequeueColliders(world.bodies, world.colliders, body);
 }
 
-constexpr float kUsualDensity = 1000;  // kg/m3, of BodySettings
-
 // Of a body that is not dynamic: the mass it gets when it becomes dynamic.
 KeptMass KeptMassOf(const BodyCold& body) {
     if (body.keptMass) return *body.keptMass;
     const MassProperties& shape = body.shape->Mass();
-    return {shape.volume * kUsualDensity, Vector3(shape.principalInertia * kUsualDensity), shape.principalAxes};
+    constexpr float kDensity = BodySettings::kUsualDensity;
+    return {shape.volume * kDensity, Vector3(shape.principalInertia * kDensity), shape.principalAxes};
 }
 
 KeptMass MassOf(const BodyDynamics& d) {

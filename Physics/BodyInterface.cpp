@@ -39,7 +39,8 @@ void FillDynamics(BodyDynamics& d, BodyCold& cold, const BodySettings& s) {
     d.continuous = s.continuous != ContinuousCollision::Off;
     const bool isDynamic = s.motion == MotionType::Dynamic;
     // For the others, mass settings take effect when they become dynamic.
-    const bool isGiven = mass.volume > 0 && (s.mass > 0 || s.density != 1000.0f || !s.inertia.isZero(0));
+    const bool isGiven =
+        mass.volume > 0 && (s.mass > 0 || s.density != BodySettings::kUsualDensity || !s.inertia.isZero(0));
     if (!isDynamic && !isGiven) return;
     const float kilograms = s.mass > 0 ? s.mass : s.density * mass.volume;
     const Vector3 inertia =

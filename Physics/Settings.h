@@ -106,13 +106,14 @@ struct SolverSettings {
 };
 
 struct BodySettings {
+    static constexpr float kUsualDensity = 1000.0f;  // kg/m3, of water
     ShapePtr shape;
     MotionType motion = MotionType::Dynamic;
     Position position = Position::Zero();       // m, of the shape's own origin; at most 1e18 per axis
     Quaternion rotation{};                      // unit within 1e-3; normalized exactly
     Vector3 linearVelocity = Vector3::Zero();   // m/s, of the center of mass; clamped to 3e8
     Vector3 angularVelocity = Vector3::Zero();  // rad/s, world axes; clamped to 1e6
-    float density = 1000.0f;                    // kg/m3, > 0; used if mass is 0
+    float density = kUsualDensity;              // kg/m3, > 0; used if mass is 0
     float mass = 0.0f;                          // kg, >= 0; 0: density times volume
     Vector3 inertia = Vector3::Zero();          // kg m2 about the shape's principal axes; zero: the shape's own
     Material material{};

@@ -100,7 +100,9 @@ public:
             before = after;
             result.energy = std::max(result.energy, energy);
             result.driven = driven;
-            result.gained = std::max(result.gained, energy * (1 - kRounding) - work - kUnseen * driven);
+            // No more than there is: brakes of which only the steps' ends are seen seem to take what was never there.
+            result.gained =
+                std::max(result.gained, std::min(energy, energy * (1 - kRounding) - work - kUnseen * driven));
         }
         result.finite = world_.AllFinite();
         return result;
