@@ -12,10 +12,23 @@ install(TARGETS FulcrumMath FulcrumJobs FulcrumCollision FulcrumConstraints Fulc
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT FulcrumTargets NAMESPACE Fulcrum:: DESTINATION ${package_folder})
+# A component of its own: whoever does not ask for it needs none of its packages.
+set(component_headers "")
+if(TARGET FulcrumAssets)
+  install(TARGETS FulcrumAssets EXPORT FulcrumAssetsTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+    INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT FulcrumAssetsTargets NAMESPACE Fulcrum:: DESTINATION ${package_folder})
+  install(FILES ${PROJECT_SOURCE_DIR}/Assets/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/fulcrum)
+  set(component_headers Assets/SceneFile.h Assets/RagdollJson.h Assets/Meshes/MeshImport.h)
+endif()
 
 # The headers are looked for when they are installed: whatever has been included since the build was configured is among them.
 install(CODE "
   set(FULCRUM_SOURCE \"${PROJECT_SOURCE_DIR}\")
+  set(FULCRUM_COMPONENT_HEADERS \"${component_headers}\")
   set(FULCRUM_HEADERS \"${CMAKE_INSTALL_INCLUDEDIR}/Fulcrum\")
   include(\"${PROJECT_SOURCE_DIR}/cmake/InstallHeaders.cmake\")")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,9 +1,9 @@
-# Installs the public headers: Fulcrum.h, what it includes, and what those include. Included by the installation, with
-# FULCRUM_SOURCE and FULCRUM_HEADERS (the folder to put them in, relative to the prefix or absolute).
+# Installs the public headers: Fulcrum.h and those of components, what they include, and what those include. Included by the installation, with
+# FULCRUM_SOURCE, FULCRUM_COMPONENT_HEADERS and FULCRUM_HEADERS (the folder to put them in, relative to the prefix or absolute).
 # Scripts of installations know no policies of the project.
 cmake_policy(VERSION 3.22)
 
-set(headers Fulcrum.h)
+set(headers Fulcrum.h ${FULCRUM_COMPONENT_HEADERS})
 set(position 0)
 list(LENGTH headers count)
 while(position LESS count)

@@ -1,4 +1,4 @@
-# The engine's five targets. Sources are found by folder: a new file needs no line here.
+# The engine's five targets, and Assets beside them. Sources are found by folder: a new file needs no line here.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
 find_package(ccd REQUIRED)
@@ -71,3 +71,16 @@ set_source_files_properties(Constraints/Joints/SolveJoints.cpp Constraints/Joint
   Constraints/Contacts/SolveContacts.cpp Constraints/Contacts/PrepareContacts.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 fulcrum_library(Physics PUBLIC Fulcrum::Collision Fulcrum::Constraints Fulcrum::Jobs PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>
   PRECOMPILED <Fulcrum/Physics/PhysicsSystem.h> <Fulcrum/Physics/Stages/StepState.h>)
+
+# Files of scenes, ragdolls and meshes: the only library of ours that needs other packages than the engine. The samples use it.
+if(FULCRUM_BUILD_SAMPLES OR FULCRUM_BUILD_BENCHMARKS)
+  set(FULCRUM_BUILD_ASSETS ON)
+endif()
+if(FULCRUM_BUILD_ASSETS)
+  find_package(nlohmann_json REQUIRED)
+  find_package(assimp REQUIRED)
+  fulcrum_library(Assets PUBLIC Fulcrum::Physics nlohmann_json::nlohmann_json
+    PRIVATE assimp::assimp $<BUILD_INTERFACE:Eigen3::Eigen>
+    PRECOMPILED <nlohmann/json.hpp> <Fulcrum/Assets/SceneDescription.h>)
+  fulcrum_optimize_little(FulcrumAssets)
+endif()

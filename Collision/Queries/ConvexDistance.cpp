@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fulcrum {
@@ -80,18 +81,39 @@ ConvexSeparation MeasureByLibccd(const SupportPair& pair, const RelativePose& bI
     return result;
 }
 
+// Of a shape more than ten thousand times as large as the other one GJK's simplex may come near the origin by rounding,
+// after the search has passed a plane that separates the two. A search with a shorter reach ends at that plane: here
+// all searches do, so that what is found does not depend on the reach. `gjk`: not beyond reach.
+void PreferSeparatingPlanes(const SupportPair& pair, ConvexGjkResult& gjk) {
+    constexpr float kFarLarger = 1e4f, kRounding = 1e-4f;
+    const float small = std::min(pair.a.OuterRadius(), pair.b.OuterRadius());
+    if (!(std::max(pair.a.OuterRadius(), pair.b.OuterRadius()) > kFarLarger * small)) return;
+    for (int i = 0; i < 8; ++i) {
+        const float known = gjk.status == GjkStatus::Apart ? gjk.separation : 0.0f;
+        const ConvexGjkResult farther = ConvexGjk(pair, Normalized(pair.position), known + kRounding * small);
+        if (farther.status != GjkStatus::BeyondReach) return;
+        gjk.status = GjkStatus::Apart;
+        gjk.axis = farther.axis;
+        gjk.separation = farther.separation;
+        const Vector3 deepest = pair.PointOfB(pair.b.SupportCore(-pair.DirectionInB(gjk.axis)));
+        gjk.onB = deepest;
+        gjk.onA = deepest - gjk.axis * gjk.separation;
+    }
+}
+
 }  // namespace
 
 ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach,
                                NarrowPhaseMethod method) {
     const SupportPair pair(a, b, bInA);
     if (method == NarrowPhaseMethod::Libccd) return MeasureByLibccd(pair, bInA, reach);
-    const ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), reach + pair.RadiusSum());
+    ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), reach + pair.RadiusSum());
     ConvexSeparation result;
     if (gjk.status == GjkStatus::BeyondReach) {
         result.isBeyond = true;
         return result;
     }
+    PreferSeparatingPlanes(pair, gjk);
     if (gjk.status == GjkStatus::Apart) {
         result.separation = gjk.separation - pair.RadiusSum();
         result.normal = gjk.axis;

@@ -20,6 +20,15 @@ LabWorld::LabWorld(LabRun& run, const Vector3& gravity, void (*change)(SystemSet
     system_ = PhysicsSystem::Create(settings, run.jobs).Value();
 }
 
+LabWorld::LabWorld(LabRun& run, SystemSettings settings) : run_(run) {
+    const SystemSettings effort = run.setting.System();
+    settings.solver = effort.solver;
+    settings.sleep.enabled = false;
+    settings.narrowPhase = effort.narrowPhase;
+    if (std::isinf(effort.exactJointLoad)) settings.exactJointLoad = effort.exactJointLoad;
+    system_ = PhysicsSystem::Create(settings, run.jobs).Value();
+}
+
 LabWorld::~LabWorld() {
     bool isInside = true;
     for (const Built& built : dynamic_) {

@@ -1,6 +1,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Options.h>
 
 #include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
+#include <Fulcrum/PerformanceTest/Accuracy/UserScene.h>
 #include <Fulcrum/Samples/Runner/CommandLine.h>
 
 #include <cstdlib>
@@ -35,9 +36,10 @@ Result<LabCommand> ParseAdvise(std::vector<std::string> arguments) {
     command.lab.isQuick = true;
     command.lab.resumes = true;
     std::string name;
-    CLI::App app("Names the cheapest setting for a scene of the accuracy lab, from a short grid of runs",
+    CLI::App app("Names the cheapest setting for your scene, or one of ours, from a short grid of runs",
                  "./fulcrum advise");
-    app.add_option("SCENE", name, "a scene of ./fulcrum accuracy, the nearest to what you simulate")->required();
+    app.add_option("SCENE", name, "your scene: FILE.json or FILE.cbor; or one of ./fulcrum accuracy or ./fulcrum list")
+        ->required();
     AddText(app, "--error", "the largest error to accept, as a part or in per cent: 0.01 or 1%",
             [&](const std::string& text) { command.adviseError = NumberWith(text, "%", 0.01, "--error"); });
     AddText(app, "--budget", "the largest cost to accept, ms of work per frame of 1/60 s: 2 or 2ms",
@@ -51,7 +53,12 @@ Result<LabCommand> ParseAdvise(std::vector<std::string> arguments) {
     if (!command.help.empty()) return command;
     if (!command.adviseError && !command.adviseBudget)
         return Error{ErrorCode::OutOfRange, "advise needs --error or --budget (./fulcrum advise --help)"};
-    if (const Status chosen = ChooseScenes(name, command.lab); !chosen) return chosen.GetError();
+    command.lab.scenes = FindLabScenes(name);
+    if (!command.lab.scenes.empty()) return command;
+    const Result<const LabScene*> scene = LoadUserScene(name);
+    if (!scene) return scene.GetError();
+    command.lab.scenes = {scene.Value()};
+    command.lab.resumes = false;  // the file may have changed
     return command;
 }
 

@@ -1,4 +1,4 @@
-// The command lines of ./fulcrum accuracy and ./fulcrum advise. Read by Main.cpp; pure function of the arguments.
+// The command lines of ./fulcrum accuracy and ./fulcrum advise. Read by Main.cpp.
 #pragma once
 
 #include <Fulcrum/PerformanceTest/Accuracy/Lab.h>
@@ -19,7 +19,8 @@ struct LabCommand {
     std::string help;                                 // not empty: only help was requested
 };
 
-// Arguments without the program's name; the first may be "advise". Error OutOfRange: one line that says what is wrong.
+// Arguments without the program's name; the first may be "advise", which loads the user's scene (UserScene.h). Error
+// OutOfRange: one line that says what is wrong.
 Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments);
 
 }  // namespace fulcrum::accuracy

@@ -1,6 +1,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
 
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
+#include <Fulcrum/PerformanceTest/Accuracy/UserScene.h>
 
 #include <algorithm>
 
@@ -24,6 +25,7 @@ std::vector<const LabScene*> FindLabScenes(const std::string& name) {
     std::vector<const LabScene*> found;
     for (const LabScene& scene : AllLabScenes())
         if (scene.FullName() == name || scene.name == name) found.push_back(&scene);
+    if (const LabScene* users = FindUserScene(name); users && found.empty()) found.push_back(users);
     return found;
 }
 

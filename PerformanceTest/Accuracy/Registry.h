@@ -10,7 +10,8 @@ namespace fulcrum::accuracy {
 
 // In the order of reports: the accuracy scenes, then the extreme ones.
 const std::vector<LabScene>& AllLabScenes();
-// "incline" and "incline.slide" both name scenes; empty for an unknown name.
+// "incline" and "incline.slide" both name scenes, and so does that which LoadUserScene has loaded; empty for an unknown
+// name.
 std::vector<const LabScene*> FindLabScenes(const std::string& name);
 // Full names, and the names that several share.
 std::vector<std::string> LabSceneNames();

@@ -1,9 +1,11 @@
 #include <Fulcrum/Samples/Runner/Commands.h>
 
+#include <Fulcrum/Assets/Meshes/MeshImport.h>
+#include <Fulcrum/Assets/SceneFile.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Math/Wide.h>
+#include <Fulcrum/Samples/Runner/FileScene.h>
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
-#include <Fulcrum/Samples/Runner/MeshImport.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Runner/Recorder.h>
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
@@ -171,6 +173,30 @@ int Drop(const Command& command, SceneInput input, const JsonOutput& json) {
                    dropped + " dropped onto " + command.onto.filename().string()});
 }
 
+int RunFile(const Command& command, SceneInput input, const JsonOutput& json) {
+    const Result<SceneDescription> read = ReadWithinMemory([&] { return ReadScene(command.file); });
+    if (!read) return Fail(read.GetError().message);
+    const std::string name = command.file.stem().string();
+    const Scene scene = SceneOf(name, read.Value());
+    RunOptions options = command.options;
+    options.dt = options.givenDt.value_or(read.Value().dt);
+    input.description = &read.Value();
+    return RunJob({scene, input, options, json, name, scene.description});
+}
+
+int Export(const Command& command) {
+    const Result<ExportedScene> exported = ExportScene(*command.scene, {});
+    if (!exported) return Fail(std::string(command.scene->name) + ": " + exported.GetError().message);
+    for (const std::string& missing : exported.Value().warnings)
+        std::fprintf(stderr, "fulcrum: warning: the file does not have %s\n", missing.c_str());
+    const Status written = WriteScene(command.file, exported.Value().description);
+    if (!written) return Fail(written.GetError().message);
+    std::printf("Wrote %s: %zu bodies, %zu joints, %zu ragdolls\n", command.file.c_str(),
+                exported.Value().description.bodies.size(), exported.Value().description.joints.size(),
+                exported.Value().description.ragdolls.size());
+    return 0;
+}
+
 int PrintVersion() {
     const std::string commit = CommitText();
     std::printf("Fulcrum %s\ncommit    %s\ncompiler  %s\nlanes     %d\n", FULCRUM_VERSION_STRING,
@@ -204,6 +230,8 @@ int Execute(const Command& command) {
         case CommandKind::Run:
             return RunJob(
                 {*command.scene, input, command.options, json, command.scene->name, command.scene->description});
+        case CommandKind::RunFile: return RunFile(command, input, json);
+        case CommandKind::Export: return Export(command);
         case CommandKind::Drop: return Drop(command, input, json);
         case CommandKind::List: return List();
         case CommandKind::Version: return PrintVersion();

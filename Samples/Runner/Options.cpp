@@ -1,6 +1,7 @@
 #include <Fulcrum/Samples/Runner/Options.h>
 
 #include <Fulcrum/Samples/Runner/CommandLine.h>
+#include <Fulcrum/Samples/Runner/FileScene.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 
 #include <algorithm>
@@ -86,7 +87,8 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     AddReal(app, "--seconds", 0.001, 1e6, "simulated time instead of --steps", [&](double value) {
         options.seconds = value;
     })->excludes(steps);
-    AddReal(app, "--dt", 1e-5, 1, "seconds a step (default 1/60)", [&](double value) { options.dt = value; });
+    AddReal(app, "--dt", 1e-5, 1, "seconds a step (default 1/60, or that of the file)",
+            [&](double value) { options.givenDt = options.dt = value; });
     AddInteger(app, "--threads", 1, kMostThreads, "threads (default: all of this machine)",
                [&](int value) { options.threads = value; });
     AddSolverOptions(app, options.solver);
@@ -105,6 +107,15 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     app.add_flag("--quiet", options.isQuiet, "say nothing but what goes wrong; the exit status says the rest");
     AddSeed(app, "--seed", "of the random numbers of scenes that use them (default 1)",
             [&](uint64_t value) { options.seed = value; });
+}
+
+// An error that names what was probably meant.
+MaybeError FindNamed(const std::string& name, const Scene*& scene) {
+    scene = FindScene(name);
+    if (scene) return {};
+    Error error = UnknownName("scene", name, SceneNames());
+    error.message += " (./fulcrum list shows all)";
+    return error;
 }
 
 }  // namespace
@@ -162,8 +173,12 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     CLI::App app("Simulates scenes of Fulcrum", "fulcrum");
     CLI::App* run =
         app.add_subcommand("run", "simulate a scene, report, record it to out/SCENE.html and out/SCENE.glb");
-    run->add_option("scene", sceneName, "one of ./fulcrum list")->type_name("SCENE");
+    run->add_option("scene", sceneName, "one of ./fulcrum list, or a scene file: FILE.json or FILE.cbor")
+        ->type_name("SCENE");
     AddRunOptions(*run, command.options);
+    CLI::App* exported = app.add_subcommand("export", "write a scene to a file that run takes and you may edit");
+    exported->add_option("scene", sceneName, "one of ./fulcrum list")->type_name("SCENE");
+    exported->add_option("file", file, "FILE.json, or FILE.cbor, which is smaller")->type_name("FILE");
     CLI::App* drop = app.add_subcommand("drop", "the same with a heap of the mesh in a file: OBJ, STL, PLY, glTF, ...");
     drop->add_option("file", file, "the mesh; each of its parts becomes a convex hull, the whole 1 m large")
         ->type_name("FILE");
@@ -176,7 +191,7 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     app.add_flag("--version", wantsVersion, "the version, its commit, compiler and lanes");
     if (!arguments.empty() && arguments[0] == "help") {
         arguments.erase(arguments.begin());
-        const std::vector<std::string> names{"run", "drop", "list"};
+        const std::vector<std::string> names{"run", "export", "drop", "list"};
         if (!arguments.empty() && std::find(names.begin(), names.end(), arguments[0]) == names.end())
             return UnknownName("command", arguments[0], names);
         arguments.push_back("--help");
@@ -193,12 +208,19 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
         command.kind = CommandKind::Run;
         if (sceneName.empty())
             return Error{ErrorCode::OutOfRange, "run needs a scene's name, for example: ./fulcrum run pyramid"};
-        command.scene = FindScene(sceneName);
-        if (!command.scene) {
-            Error error = UnknownName("scene", sceneName, SceneNames());
-            error.message += " (./fulcrum list shows all)";
-            return error;
+        if (IsSceneFile(sceneName)) {
+            command.kind = CommandKind::RunFile;
+            command.file = sceneName;
+        } else if (MaybeError unknown = FindNamed(sceneName, command.scene)) {
+            return *unknown;
         }
+    } else if (exported->parsed()) {
+        command.kind = CommandKind::Export;
+        if (!IsSceneFile(file))
+            return Error{ErrorCode::OutOfRange,
+                         "export needs a scene and a file, for example: ./fulcrum export pyramid pyramid.json"};
+        command.file = file;
+        if (MaybeError unknown = FindNamed(sceneName, command.scene)) return *unknown;
     } else if (drop->parsed()) {
         command.kind = CommandKind::Drop;
         if (file.empty())

@@ -4,7 +4,7 @@
 
 #include <Fulcrum/Math/Result.h>
 #include <Fulcrum/Physics/Settings.h>
-#include <Fulcrum/Samples/Runner/MeshImport.h>
+#include <Fulcrum/Assets/Meshes/MeshImport.h>
 #include <Fulcrum/Samples/Scenes/Scene.h>
 
 #include <CLI/App.hpp>
@@ -19,7 +19,8 @@ namespace fulcrum {
 struct RunOptions {
     std::optional<int> steps;
     std::optional<double> seconds;
-    double dt = 1.0 / 60;
+    std::optional<double> givenDt;  // --dt
+    double dt = 1.0 / 60;           // that of the run
     int threads = 1;
     SolverSettings solver;
     NarrowPhaseMethod narrowPhase = NarrowPhaseMethod::Automatic;
@@ -34,17 +35,17 @@ struct RunOptions {
     int StepsOf(const Scene& scene) const;
 };
 
-enum class CommandKind { Help, Version, List, Run, Drop };
+enum class CommandKind { Help, Version, List, Run, RunFile, Export, Drop };
 
 struct Command {
     CommandKind kind = CommandKind::Help;
     std::string help;              // Help
-    const Scene* scene = nullptr;  // Run, Drop
-    std::filesystem::path file;    // Drop
+    const Scene* scene = nullptr;  // Run, Export, Drop
+    std::filesystem::path file;    // RunFile, Export, Drop
     int count = 50;                // Drop
     std::filesystem::path onto;    // Drop; empty: onto a floor
     MeshImportSettings ontoSettings;
-    RunOptions options;  // Run, Drop
+    RunOptions options;  // Run, RunFile, Drop
 };
 
 // Arguments without the program's name. Error OutOfRange: one line that says what is wrong and what was probably meant.

@@ -16,10 +16,11 @@ SceneWorld::SceneWorld(const Scene& scene, const SceneInput& input)
 
 Result<std::unique_ptr<SceneWorld>> SceneWorld::Create(const Scene& scene, const SceneInput& input, JobSystem* jobs) {
     SystemSettings settings;
-    settings.solver = input.solver;
-    settings.narrowPhase = input.narrowPhase;
-    settings.measuresErrors = input.measuresErrors;
-    settings.sleep.enabled = scene.sleeping;
+    if (input.description) settings = input.description->settings;
+    else settings.sleep.enabled = scene.sleeping;
+    if (!input.description || input.solver != SolverSettings()) settings.solver = input.solver;
+    if (input.narrowPhase != NarrowPhaseMethod::Automatic) settings.narrowPhase = input.narrowPhase;
+    if (input.measuresErrors) settings.measuresErrors = true;
     if (scene.adjust) scene.adjust(settings);
     if (input.sleeping) settings.sleep.enabled = *input.sleeping;
     settings.gravity = (settings.gravity.cast<double>() * input.gravityScale).cast<float>();
@@ -91,6 +92,7 @@ BodyId SceneWorld::Add(const BodySettings& settings) {
 
 void SceneWorld::AddRagdoll(const RagdollSettings& settings, const Pose& origin, std::optional<MotionType> motion) {
     Result<Ragdoll> ragdoll = Ragdoll::Create(*system_, settings, origin, motion);
+    if (ragdoll && input_.keepsSettings) addedRagdolls.push_back({{}, settings, origin, motion});
     if (ragdoll) ragdolls.push_back(std::move(ragdoll.Value()));
     else if (!firstError_) firstError_ = ragdoll.GetError();
 }

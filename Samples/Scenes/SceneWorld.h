@@ -2,6 +2,7 @@
 // the tests; one thread at a time.
 #pragma once
 
+#include <Fulcrum/Assets/SceneDescription.h>
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
@@ -14,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -29,7 +31,8 @@ struct SceneInput {
     int count = 50;                // bodies of the drop scenes, >= 1
     std::optional<bool> sleeping;  // null: as the scene has it
     double gravityScale = 1;       // times the scene's gravity
-    bool keepsSettings = false;    // whether the world remembers what Add was given
+    bool keepsSettings = false;    // whether the world remembers what Add, Join and AddRagdoll were given
+    const SceneDescription* description = nullptr;  // of a scene from a file
 };
 
 class SceneWorld {
@@ -55,8 +58,9 @@ public:
     Drawing& Draw() { return drawing_; }
     const Drawing& Draw() const { return drawing_; }
     int StepCount() const { return stepCount_; }
-    double Time() const { return time_; }                // s
-    double LastStepMs() const { return lastMs_; }        // wall clock of PhysicsSystem::Update alone
+    double Time() const { return time_; }          // s
+    double LastStepMs() const { return lastMs_; }  // wall clock of PhysicsSystem::Update alone
+    bool Listens() const { return listener_ != nullptr; }
     double LongestStepMs() const { return longestMs_; }  // of all but the first step
 
     // Number of bodies with a pose or velocity that is not finite, or frozen for that reason.
@@ -69,9 +73,12 @@ public:
     std::vector<BodyId> watched;    // bodies that the figure uses, in an order that the scene chooses
     std::vector<JointId> joints;    // likewise
     std::vector<Ragdoll> ragdolls;  // all that AddRagdoll made
-    std::vector<std::pair<BodyId, BodySettings>> added;  // where SceneInput::keepsSettings asks for them
-    double figure = 0;                                   // the figure, if the scene accumulates it over the steps
-    std::vector<Ray> rays;                               // of a scene that times a batch of them, and their hits
+    // Where SceneInput::keepsSettings asks for them. Joints whose settings have code are missing.
+    std::vector<std::pair<BodyId, BodySettings>> added;
+    std::vector<std::pair<JointId, AnyJointSettings>> joined;
+    std::vector<SceneRagdoll> addedRagdolls;
+    double figure = 0;      // the figure, if the scene accumulates it over the steps
+    std::vector<Ray> rays;  // of a scene that times a batch of them, and their hits
     std::vector<WorldRayHit> rayHits;
     std::vector<std::pair<BodyId, BodyLook>> looks;                  // what Show was given
     std::vector<std::pair<BodyId, std::vector<Look>>> surfaceLooks;  // likewise
@@ -85,12 +92,18 @@ public:
     ShapePtr CompoundOf(std::span<const Compound::ChildSettings> children);
     ShapePtr MutableCompoundOf(std::span<const CompoundShape::ChildSettings> children);
 
+    // Makes Create fail, with the first such error.
+    void Fail(const Error& error) {
+        if (!firstError_) firstError_ = error;
+    }
     // An error of Create where the settings are wrong.
     BodyId Add(const BodySettings& settings);
     // Settings of any kind of joint; likewise.
     template <class Settings>
     JointId Join(const Settings& settings) {
         Result<JointId> joint = Joints().Create(settings);
+        if constexpr (std::is_constructible_v<AnyJointSettings, Settings>)
+            if (joint && input_.keepsSettings) joined.emplace_back(joint.Value(), settings);
         if (joint) return joint.Value();
         if (!firstError_) firstError_ = joint.GetError();
         return {};

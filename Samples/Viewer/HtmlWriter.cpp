@@ -1,5 +1,6 @@
 #include <Fulcrum/Samples/Viewer/HtmlWriter.h>
 
+#include <Fulcrum/Assets/Json/Base64.h>
 #include <Fulcrum/Samples/Viewer/PageData.h>
 #include <Fulcrum/Samples/Viewer/WholeFile.h>
 
@@ -28,7 +29,7 @@ Status WriteHtml(const Recording& recording, const std::filesystem::path& path) 
     if (place == std::string::npos)
         return Error{ErrorCode::OutOfRange, "the page's bundle " FULCRUM_VIEWER_PAGE
                                             " is missing or damaged: build the target FulcrumViewerPage"};
-    const std::string data = Base64(Deflated(EncodePageData(recording)));
+    const std::string data = ToBase64(Deflated(EncodePageData(recording)));
     const std::string_view whole = page;
     return WriteWholeFile(path, {whole.substr(0, place), data, whole.substr(place + kPlaceOfRecording.size())});
 }

@@ -44,7 +44,4 @@ std::string EncodePageData(const Recording& recording);
 // In the zlib format, RFC 1950.
 std::string Deflated(const std::string& bytes);
 
-// Standard alphabet with padding, RFC 4648.
-std::string Base64(const std::string& bytes);
-
 }  // namespace fulcrum

@@ -25,9 +25,10 @@ const std::map<std::string, std::vector<std::string>> kAllowedFolders = {
     {"Collision", {"Math"}},
     {"Constraints", {"Math"}},
     {"Physics", {"Math", "Collision", "Constraints", "Jobs"}},
-    {"Samples", {"Math", "Collision", "Constraints", "Jobs", "Physics"}},
-    {"PerformanceTest", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples", "UnitTests"}},
-    {"UnitTests", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Samples", "PerformanceTest"}},
+    {"Assets", {"Math", "Collision", "Constraints", "Jobs", "Physics"}},
+    {"Samples", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Assets"}},
+    {"PerformanceTest", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Assets", "Samples", "UnitTests"}},
+    {"UnitTests", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Assets", "Samples", "PerformanceTest"}},
 };
 
 // The same among the parts of Physics: the folders in it, and the files beside these, which are its interfaces. Every

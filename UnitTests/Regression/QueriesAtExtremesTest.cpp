@@ -322,5 +322,39 @@ TEST(QueriesAtExtremes, ATriangleThatIsCastTouchesWhatItHits) {
     EXPECT_GT(hits, Cases(2000));
 }
 
+// A triangle of 400 km has a rounding of centimeters, within which shapes near it may count as overlapping. Whether
+// they do must not follow from how far away shapes are looked for: of two bodies the closest was the one that was found
+// first.
+TEST(QueriesAtExtremes, TheClosestPointsDoNotDependOnTheReach) {
+    RandomPoses random(3);
+    const auto small =
+        Triangle::Create(Vector3(0.5f, 0, 0), Vector3(0, 0.3f, 0.1f), Vector3(-0.4f, 0.1f, 0.4f)).Value();
+    int compared = 0;
+    for (int i = 0; i < Cases(4000); ++i) {
+        Vector3 vertices[3];
+        for (Vector3& vertex : vertices) vertex = random.InBox(4e5f);
+        const uint32_t indices[] = {0, 1, 2};
+        const auto made = TriangleMesh::Create({.vertices = vertices, .indices = indices, .isTwoSided = true});
+        ASSERT_TRUE(made);
+        // Near a point of it.
+        const float a = random.Between(0, 1), b = random.Between(0, 1 - a);
+        const Vector3 on = vertices[0] * a + vertices[1] * b + vertices[2] * (1 - a - b), off = random.InBox(1.5f);
+        const RelativePose pose{Vector3(on + off - made.Value()->Mass().centerOfMass), random.Rotation()};
+        ClosestPoints all;
+        if (!FindClosestPoints(*made.Value(), *small, pose, 10, all)) continue;
+        for (const float reach : {0.02f, 0.1f, 0.5f, 1.0f, 3.0f}) {
+            if (std::fabs(all.distance - reach) < 0.1f) continue;  // rounding
+            ClosestPoints found;
+            const bool isFound = FindClosestPoints(*made.Value(), *small, pose, reach, found);
+            ASSERT_EQ(isFound, all.distance < reach) << i << ": " << all.distance << " within " << reach;
+            if (isFound) {
+                ASSERT_EQ(found.distance, all.distance) << i << " within " << reach;
+            }
+            ++compared;
+        }
+    }
+    EXPECT_GT(compared, Cases(4000));
+}
+
 }  // namespace
 }  // namespace fulcrum::testing

@@ -1,7 +1,7 @@
 // Import of mesh files as shapes: valid files, and files without usable meshes.
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
-#include <Fulcrum/Samples/Runner/MeshImport.h>
+#include <Fulcrum/Assets/Meshes/MeshImport.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
 

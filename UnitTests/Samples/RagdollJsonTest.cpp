@@ -2,7 +2,7 @@
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
-#include <Fulcrum/Samples/Ragdoll/RagdollJson.h>
+#include <Fulcrum/Assets/RagdollJson.h>
 #include <Fulcrum/Samples/Scenes/Humanoid.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 

@@ -3,6 +3,12 @@ import * as Plot from '@observablehq/plot';
 import { drawnOf, labelsOf } from './points.mjs';
 
 const data = JSON.parse(document.getElementById('runs').textContent);
+// report.html?scenes=tower,pendulum: these plots alone, for pictures.
+const chosen = new URLSearchParams(location.search).get('scenes')?.split(',');
+if (chosen) {
+  data.scenes = data.scenes.filter(({ name }) => chosen.includes(name));
+  document.body.classList.add('picture');
+}
 const FAMILIES = [
   { name: 'soft', label: 'soft rows (default)', color: '#0072b2' },
   { name: 'baumgarte', label: 'Baumgarte', color: '#d55e00' },

@@ -8,7 +8,7 @@
 //
 // Vectors are [x, y, z], rotations [x, y, z, w]; infinite numbers are "infinity" or "-infinity"; parents are given by
 // name. Kinds of joints: Point, Fixed, Hinge, Cone, SwingTwist, SixDof (its axes are linearX .. angularZ). Kinds of
-// shapes: Sphere (radius), Box (halfExtents, convexRadius), Capsule (halfHeight, radius), ConvexHull (points).
+// shapes: those of Json/ShapeJson.h, of which Sphere, Box, Capsule and ConvexHull without a convex radius are written.
 // Samples/Ragdoll/humanoid.json is a complete example.
 #pragma once
 

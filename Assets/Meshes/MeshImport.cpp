@@ -1,8 +1,8 @@
-#include <Fulcrum/Samples/Runner/MeshImport.h>
+#include <Fulcrum/Assets/Meshes/MeshImport.h>
 
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
-#include <Fulcrum/Samples/Runner/MeshFile.h>
+#include <Fulcrum/Assets/Meshes/MeshFile.h>
 
 #include <algorithm>
 #include <cmath>

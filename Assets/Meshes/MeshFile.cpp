@@ -1,4 +1,4 @@
-#include <Fulcrum/Samples/Runner/MeshFile.h>
+#include <Fulcrum/Assets/Meshes/MeshFile.h>
 
 #include <Eigen/LU>
 #include <assimp/Importer.hpp>

@@ -1,20 +1,18 @@
-// Reading of RagdollJson.h.
-#include <Fulcrum/Samples/Ragdoll/RagdollJson.h>
+// Reads settings from JSON: an archive for SettingsFields.h. One thread.
+#pragma once
 
-#include <Fulcrum/Collision/Shapes/ConvexHull.h>
-#include <Fulcrum/Collision/Shapes/Primitives.h>
-#include <Fulcrum/Samples/Ragdoll/RagdollFields.h>
+#include <Fulcrum/Assets/Json/SettingsFields.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
+#include <limits>
+#include <map>
 #include <type_traits>
 #include <utility>
 
 namespace fulcrum {
-
-namespace {
 
 using Json = nlohmann::ordered_json;
 
@@ -25,10 +23,18 @@ std::string ListOf(const Names& names) {
     return list;
 }
 
-// Reads the fields of one object; keeps the first error of the whole document.
-class Reader {
+// What is the same for a whole document.
+struct JsonDocument {
+    MaybeError error;                        // the first
+    std::map<std::string, ShapePtr> shapes;  // that bodies may name
+    std::filesystem::path folder;            // to which names of other files are relative
+};
+
+// Reads the fields of one object. Errors name the path in the document.
+class JsonReader {
 public:
-    Reader(const Json& node, std::string path, MaybeError& error) : node_(node), path_(std::move(path)), error_(error) {
+    JsonReader(const Json& node, std::string path, JsonDocument& document)
+        : node_(node), path_(std::move(path)), document_(document), error_(document.error) {
         if (!node_.is_object()) Fail(path_, "an object");
     }
 
@@ -57,6 +63,8 @@ public:
         return found == node_.end() ? nullptr : &*found;
     }
     std::string PathOf(const std::string& name) const { return path_.empty() ? name : path_ + "." + name; }
+    const std::string& Where() const { return path_; }
+    JsonDocument& Document() { return document_; }
 
     // After all fields: remaining names are unknown.
     void Finish() {
@@ -82,10 +90,10 @@ public:
             else if (node == "infinity") value = std::numeric_limits<T>::infinity();
             else if (node == "-infinity") value = -std::numeric_limits<T>::infinity();
             else Fail(path, "a number", &node);
-        } else if constexpr (std::is_same_v<T, LockedAxes>) {
+        } else if constexpr (std::is_same_v<T, LockedAxes> || std::is_same_v<T, SensorSees>) {
             uint8_t bits = static_cast<uint8_t>(value);
             Read(node, path, bits);
-            value = static_cast<LockedAxes>(bits);
+            value = static_cast<T>(bits);
         } else if constexpr (std::is_integral_v<T>) {
             ReadInteger(node, path, value);
         } else {
@@ -93,8 +101,25 @@ public:
         }
     }
 
+    // A variant of joint settings, whose object has been opened: its kind and fields.
+    template <class Joint>
+    void ReadJoint(Joint& value) {
+        size_t kind = 0;
+        constexpr const auto& kNames = kJointKindNames<Joint>;
+        if (!error_ && !node_.contains("kind"))
+            error_ = WrongAt(path_, "kind is missing; it must be one of " + ListOf(kNames));
+        Choice("kind", kind, kNames);
+        if (error_) return;
+        [&]<size_t... kinds>(std::index_sequence<kinds...>) {
+            ((kind == kinds ? void(value.template emplace<kinds>()) : void()), ...);
+        }
+        (std::make_index_sequence<std::variant_size_v<Joint>>());
+        std::visit([&](auto& joint) { Describe(*this, joint); }, value);
+    }
+
 private:
     void Fail(const std::string& path, const char* expected, const Json* node = nullptr) {
+        if (error_) return;
         error_ = WrongAt(path, (node ? std::string("of type ") + node->type_name() + "; it" : std::string("it")) +
                                    " must be " + expected);
     }
@@ -128,6 +153,11 @@ private:
         float* const numbers[] = {&value.x, &value.y, &value.z, &value.w};
         for (size_t k = 0; k < 4; ++k) Read(node[k], path + "[" + std::to_string(k) + "]", *numbers[k]);
     }
+    template <class T, size_t kSize>
+    void ReadMore(const Json& node, const std::string& path, std::array<T, kSize>& values) {
+        if (!IsArray(node, path, kSize)) return;
+        for (size_t k = 0; k < kSize; ++k) Read(node[k], path + "[" + std::to_string(k) + "]", values[k]);
+    }
     template <class T>
     void ReadMore(const Json& node, const std::string& path, std::optional<T>& value) {
         value.reset();
@@ -136,117 +166,36 @@ private:
         if constexpr (std::is_same_v<T, Vector3>) value->setZero();
         Read(node, path, *value);
     }
-    void ReadMore(const Json& node, const std::string& path, ShapePtr& value);
-    void ReadMore(const Json& node, const std::string& path, RagdollJoint& value) {
-        Reader fields(node, path, error_);
-        size_t kind = 0;
-        if (!error_ && !node.contains("kind"))
-            error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kJointKindNames));
-        fields.Choice("kind", kind, kJointKindNames);
-        if (error_) return;
-        [&]<size_t... kinds>(std::index_sequence<kinds...>) {
-            ((kind == kinds ? void(value.emplace<kinds>()) : void()), ...);
-        }
-        (std::make_index_sequence<std::variant_size_v<RagdollJoint>>());
-        std::visit([&](auto& joint) { Describe(fields, joint); }, value);
-        fields.Finish();
-    }
     template <class T>
     void ReadMore(const Json& node, const std::string& path, std::vector<T>& values) {
         if (!node.is_array()) return Fail(path, "an array", &node);
         for (size_t i = 0; i < node.size(); ++i) {
-            T value;
+            T value{};
             Read(node[i], path + "[" + std::to_string(i) + "]", value);
+            if (error_) return;
             values.push_back(std::move(value));
         }
     }
+    // Settings of any other kind.
     template <class T>
-    requires requires(Reader& archive, T& value) { Describe(archive, value); }
     void ReadMore(const Json& node, const std::string& path, T& value) {
-        Reader fields(node, path, error_);
+        JsonReader fields(node, path, document_);
         Describe(fields, value);
         fields.Finish();
     }
+    void ReadMore(const Json& node, const std::string& path, RagdollJoint& value) {
+        JsonReader fields(node, path, document_);
+        fields.ReadJoint(value);
+        fields.Finish();
+    }
+    void ReadMore(const Json& node, const std::string& path, ShapePtr& value);                     // ShapeJson.cpp
+    void ReadMore(const Json& node, const std::string& path, std::shared_ptr<const Path>& value);  // likewise
 
     const Json& node_;
     std::string path_;
+    JsonDocument& document_;
     MaybeError& error_;
     std::vector<std::string> known_;
 };
-
-constexpr std::array kShapeKindNames = {"Sphere", "Box", "Capsule", "ConvexHull"};
-
-void Reader::ReadMore(const Json& node, const std::string& path, ShapePtr& value) {
-    Reader fields(node, path, error_);
-    if (!error_ && !node.contains("kind"))
-        error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kShapeKindNames));
-    size_t kind = 0;
-    fields.Choice("kind", kind, kShapeKindNames);
-    float radius = 0, halfHeight = 0, convexRadius = 0;
-    Vector3 halfExtents = Vector3::Zero();
-    std::vector<Vector3> points;
-    if (kind == 0 || kind == 2) fields.Field("radius", radius);
-    if (kind == 1) fields.Field("halfExtents", halfExtents);
-    if (kind == 1) fields.Field("convexRadius", convexRadius);
-    if (kind == 2) fields.Field("halfHeight", halfHeight);
-    if (kind == 3) fields.Field("points", points);
-    fields.Finish();
-    if (error_) return;
-    const auto keep = [&](const auto& shape) {
-        if (shape) value = shape.Value();
-        else error_ = Error{shape.GetError().code, path + ": " + shape.GetError().message};
-    };
-    if (kind == 0) keep(Sphere::Create(radius));
-    if (kind == 1) keep(Box::Create(halfExtents, convexRadius));
-    if (kind == 2) keep(Capsule::Create(halfHeight, radius));
-    if (kind == 3) keep(ConvexHull::Create(points));
-}
-
-}  // namespace
-
-Result<RagdollSettings> RagdollFromJson(const Json& document) {
-    MaybeError error;
-    RagdollSettings settings;
-    Reader root(document, "", error);
-    const Json* parts = root.Find("parts");
-    root.Finish();
-    if (error) return *error;
-    if (!parts || !parts->is_array()) return WrongAt("parts", "it must be an array");
-    for (size_t i = 0; i < parts->size(); ++i) {
-        RagdollPart part;
-        Reader fields((*parts)[i], "parts[" + std::to_string(i) + "]", error);
-        fields.Field("name", part.name);
-        fields.Field("body", part.body);
-        if (const Json* parent = fields.Find("parent")) {
-            std::string name;
-            fields.Read(*parent, fields.PathOf("parent"), name);
-            const auto found = std::find_if(settings.parts.begin(), settings.parts.end(),
-                                            [&](const RagdollPart& p) { return p.name == name; });
-            part.parent = static_cast<int>(found - settings.parts.begin());
-            if (found == settings.parts.end() && !error)
-                error = WrongAt(fields.PathOf("parent"), "no part before has the name \"" + name + "\"");
-        }
-        if (const Json* joint = fields.Find("joint")) fields.Read(*joint, fields.PathOf("joint"), part.joint);
-        else if (i > 0 && !error) error = WrongAt(fields.PathOf("joint"), "missing; only the first part has none");
-        fields.Finish();
-        if (error) return *error;
-        settings.parts.push_back(std::move(part));
-    }
-    if (MaybeError e = Check(settings)) return *e;
-    return settings;
-}
-
-Result<RagdollSettings> ReadRagdoll(const std::string& file) {
-    std::ifstream stream(file);
-    if (!stream) return WrongAt(file, "it cannot be opened");
-    Result<RagdollSettings> settings = Error{ErrorCode::Unsupported, ""};
-    try {
-        settings = RagdollFromJson(Json::parse(stream));
-    } catch (const Json::parse_error& error) {
-        return WrongAt(file, error.what());
-    }
-    if (!settings) return Error{settings.GetError().code, file + ": " + settings.GetError().message};
-    return settings;
-}
 
 }  // namespace fulcrum

@@ -1,10 +1,10 @@
-// The fields of everything in a ragdoll's settings, each once, for reading and for writing alike. An archive has
+// The fields of all settings, each once, for reading, writing and the schema alike. An archive has
 //   Field(name, value)            a number, vector, text, shape, another structure or an optional one
 //   Choice(name, value, names)    an enumeration by the names of its values, in their order
-// Called by RagdollJson.cpp; no state.
+// No state.
 #pragma once
 
-#include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
+#include <Fulcrum/Assets/SceneDescription.h>
 
 #include <array>
 
@@ -15,9 +15,17 @@ inline Error WrongAt(const std::string& path, const std::string& what) {
     return {ErrorCode::Unsupported, (path.empty() ? "the document" : path) + ": " + what};
 }
 
-inline constexpr std::array kJointKindNames = {"Point", "Fixed",      "Hinge",
-                                               "Cone",  "SwingTwist", "SixDof"};  // as in RagdollJoint
-static_assert(kJointKindNames.size() == std::variant_size_v<RagdollJoint>);
+// The names of the kinds of a variant of joint settings, in its order.
+template <class Joint>
+inline constexpr std::array<const char*, 0> kJointKindNames{};
+template <>
+inline constexpr std::array kJointKindNames<RagdollJoint> = {"Point", "Fixed", "Hinge", "Cone", "SwingTwist", "SixDof"};
+template <>
+inline constexpr std::array kJointKindNames<AnyJointSettings> = {
+    "Point",  "Fixed", "Distance",      "Hinge",  "Slider", "Cone", "SwingTwist",
+    "SixDof", "Gear",  "RackAndPinion", "Pulley", "Path",   "Wheel"};
+static_assert(kJointKindNames<RagdollJoint>.size() == std::variant_size_v<RagdollJoint>);
+static_assert(kJointKindNames<AnyJointSettings>.size() == std::variant_size_v<AnyJointSettings>);
 inline constexpr std::array kCombineRuleNames = {"GeometricMean", "Average", "Minimum", "Multiply", "Maximum"};
 
 template <class Archive>
@@ -83,6 +91,7 @@ void DescribeShared(Archive& archive, JointSettings& s) {
     archive.Field("substeps", s.substeps);
     archive.Field("velocityIterations", s.velocityIterations);
     archive.Field("positionIterations", s.positionIterations);
+    archive.Field("errorTarget", s.errorTarget);
     archive.Field("massOverride", s.massOverride);
     archive.Field("userData", s.userData);
 }
@@ -123,6 +132,59 @@ void Describe(Archive& archive, SixDofJointSettings& s) {
 }
 
 template <class Archive>
+void Describe(Archive& archive, DistanceJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("minDistance", s.minDistance);
+    archive.Field("maxDistance", s.maxDistance);
+    archive.Field("spring", s.spring);
+}
+template <class Archive>
+void Describe(Archive& archive, SliderJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("slide", s.slide);
+}
+template <class Archive>
+void Describe(Archive& archive, GearJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("ratio", s.ratio);
+}
+template <class Archive>
+void Describe(Archive& archive, RackAndPinionJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("ratio", s.ratio);
+}
+template <class Archive>
+void Describe(Archive& archive, PulleyJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("fixedPointA", s.fixedPointA);
+    archive.Field("fixedPointB", s.fixedPointB);
+    archive.Field("ratio", s.ratio);
+    archive.Field("minLength", s.minLength);
+    archive.Field("maxLength", s.maxLength);
+}
+template <class Archive>
+void Describe(Archive& archive, PathPoint& s) {
+    archive.Field("position", s.position);
+    archive.Field("tangent", s.tangent);
+    archive.Field("normal", s.normal);
+}
+template <class Archive>
+void Describe(Archive& archive, PathJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("path", s.path);
+    archive.Field("along", s.along);
+    archive.Choice("rotation", s.rotation, std::array{"Free", "Tangent", "TangentAndNormal", "Constant"});
+}
+template <class Archive>
+void Describe(Archive& archive, WheelJointSettings& s) {
+    DescribeShared(archive, s);
+    archive.Field("suspension", s.suspension);
+    archive.Field("isSteered", s.isSteered);
+    archive.Field("steering", s.steering);
+    archive.Field("spin", s.spin);
+}
+
+template <class Archive>
 void Describe(Archive& archive, Material& s) {
     archive.Field("friction", s.friction);
     archive.Field("restitution", s.restitution);
@@ -152,7 +214,72 @@ void Describe(Archive& archive, BodySettings& s) {
     archive.Field("allowSleep", s.allowSleep);
     archive.Field("startAsleep", s.startAsleep);
     archive.Field("layer", s.layer);
+    archive.Field("category", s.category);
+    archive.Field("mask", s.mask);
+    archive.Choice("continuous", s.continuous, std::array{"Off", "Linear", "LinearAndAngular"});
     archive.Field("userData", s.userData);
+    archive.Field("penetrationTarget", s.penetrationTarget);
+    archive.Field("reportsContacts", s.reportsContacts);
+    archive.Field("isSensor", s.isSensor);
+    archive.Field("sensorSees", s.sensorSees);
+    archive.Field("sensorReportsStay", s.sensorReportsStay);
+}
+
+template <class Archive>
+void Describe(Archive& archive, SolverSettings& s) {
+    archive.Field("substeps", s.substeps);
+    archive.Field("velocityIterations", s.velocityIterations);
+    archive.Field("positionIterations", s.positionIterations);
+    archive.Choice("positionCorrection", s.positionCorrection, std::array{"SoftRelax", "Baumgarte"});
+    archive.Field("baumgarte", s.baumgarte);
+    archive.Field("baumgarteSlop", s.baumgarteSlop);
+}
+
+template <class Archive>
+void Describe(Archive& archive, AccuracyTarget& s) {
+    archive.Field("penetration", s.penetration);
+    archive.Field("jointError", s.jointError);
+    archive.Field("drift", s.drift);
+    archive.Field("mostSubsteps", s.mostSubsteps);
+    archive.Field("largeIslands", s.largeIslands);
+}
+
+template <class Archive>
+void Describe(Archive& archive, SleepSettings& s) {
+    archive.Field("enabled", s.enabled);
+    archive.Field("seconds", s.seconds);
+    archive.Field("linearSpeed", s.linearSpeed);
+}
+
+template <class Archive>
+void Describe(Archive& archive, EventSettings& s) {
+    archive.Field("contacts", s.contacts);
+    archive.Field("stays", s.stays);
+    archive.Field("bodies", s.bodies);
+}
+
+template <class Archive>
+void Describe(Archive& archive, SystemSettings& s) {
+    archive.Field("gravity", s.gravity);
+    archive.Field("solver", s.solver);
+    archive.Field("accuracy", s.accuracy);
+    archive.Field("sleep", s.sleep);
+    archive.Field("events", s.events);
+    archive.Field("measuresErrors", s.measuresErrors);
+    archive.Choice("narrowPhase", s.narrowPhase, std::array{"Automatic", "Libccd"});
+    archive.Field("speculativeDistance", s.speculativeDistance);
+    archive.Field("penetrationSlop", s.penetrationSlop);
+    archive.Field("contactFrequency", s.contactFrequency);
+    archive.Field("contactDampingRatio", s.contactDampingRatio);
+    archive.Field("contactPushSpeed", s.contactPushSpeed);
+    archive.Field("depenetrationSpeed", s.depenetrationSpeed);
+    archive.Field("jointFrequency", s.jointFrequency);
+    archive.Field("jointDampingRatio", s.jointDampingRatio);
+    archive.Field("exactJointLoad", s.exactJointLoad);
+    archive.Field("jointPushSpeed", s.jointPushSpeed);
+    archive.Field("restitutionSpeed", s.restitutionSpeed);
+    archive.Field("boundsMargin", s.boundsMargin);
+    archive.Field("layerCollides", s.layerCollides);
 }
 
 }  // namespace fulcrum

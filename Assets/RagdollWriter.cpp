@@ -1,0 +1,46 @@
+// Writing of RagdollJson.h.
+#include <Fulcrum/Assets/RagdollJson.h>
+
+#include <Fulcrum/Assets/Json/JsonWriter.h>
+#include <Fulcrum/Assets/Json/ShapeJson.h>
+
+#include <fstream>
+
+namespace fulcrum {
+
+Result<Json> RagdollToJson(const RagdollSettings& settings) {
+    if (MaybeError e = Check(settings)) return *e;
+    Json parts = Json::array();
+    for (size_t i = 0; i < settings.parts.size(); ++i) {
+        const RagdollPart& part = settings.parts[i];
+        const std::string path = "parts[" + std::to_string(i) + "].";
+        if (!CanBeWrittenByKind(*part.body.shape))
+            return WrongAt(path + "body.shape", std::string("a ") + ShapeTypeName(part.body.shape->Type()) +
+                                                    (part.body.shape->IsConvex() ? " with a convex radius" : "") +
+                                                    " cannot be written");
+        Json node = {{"name", part.name}};
+        if (i > 0) node["parent"] = settings.parts[static_cast<size_t>(part.parent)].name;
+        node["body"] = ShortlyWritten(part.body);
+        if (i > 0) node["joint"] = JointWritten(part.joint);
+        parts.push_back(std::move(node));
+    }
+    return Json{{"parts", std::move(parts)}};
+}
+
+Status WriteRagdoll(const std::string& file, const RagdollSettings& settings) {
+    const Result<Json> document = RagdollToJson(settings);
+    if (!document) return document.GetError();
+    std::ofstream stream(file);
+    // One part per line.
+    const char* before = "{\"parts\": [\n  ";
+    for (const Json& part : document.Value()["parts"]) {
+        stream << before << part.dump();
+        before = ",\n  ";
+    }
+    stream << "\n]}\n";
+    stream.close();
+    if (!stream) return WrongAt(file, "it cannot be written");
+    return Done{};
+}
+
+}  // namespace fulcrum

@@ -1,0 +1,108 @@
+// A user's own scene in the lab: its error is what is seen of it, and advice names a setting that has it.
+#include <Fulcrum/Assets/SceneFile.h>
+#include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Advice.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Options.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+namespace fulcrum::accuracy {
+namespace {
+
+namespace fs = std::filesystem;
+
+class UserScene : public testing::Test {
+protected:
+    UserScene() { fs::create_directories(folder_); }
+    ~UserScene() override { fs::remove_all(folder_); }
+
+    // Runs a scene at some substeps of 1/60 s.
+    std::vector<RunRecord> RunAt(LabOptions lab, std::initializer_list<int> substeps) const {
+        lab.folder = folder_ / "runs";
+        lab.isQuick = true;
+        for (const int count : substeps) {
+            Setting setting;
+            setting.solver.substeps = count;
+            lab.settings.push_back(setting);
+        }
+        Result<std::vector<RunRecord>> runs = RunLab(lab);
+        EXPECT_TRUE(runs);
+        return runs ? std::move(runs.Value()) : std::vector<RunRecord>();
+    }
+
+    const fs::path folder_ = fs::path(testing::TempDir()) / "user_scene_test";
+};
+
+// Six cubes of 1 m, of which five press on the lowest contact.
+SceneDescription Stack() {
+    SceneDescription scene;
+    scene.steps = 240;
+    scene.settings.accuracy.penetration = std::numeric_limits<float>::infinity();
+    scene.bodies.push_back(
+        {"floor", {.shape = Box::Create({5, 1, 5}).Value(), .motion = MotionType::Static, .position = {0, -1, 0}}});
+    const ShapePtr cube = Box::Create({0.5f, 0.5f, 0.5f}).Value();
+    for (int i = 0; i < 6; ++i) scene.bodies.push_back({{}, {.shape = cube, .position = {0, 0.5 + 1.01 * i, 0}}});
+    return scene;
+}
+
+// What is exceeded in one of twenty steps after half a second.
+double OverlapByHand(SceneDescription scene, int substeps) {
+    scene.settings.solver.substeps = substeps;
+    scene.settings.sleep.enabled = false;
+    const auto system = std::move(PhysicsSystem::Create(scene.settings).Value());
+    EXPECT_TRUE(AddScene(*system, scene));
+    std::vector<double> overlaps;
+    for (int i = 1; i <= scene.steps; ++i) {
+        EXPECT_TRUE(system->Update(1.0 / 60));
+        if (i >= 30) overlaps.push_back(static_cast<double>(system->Report().largestPenetration) / 0.5);
+    }
+    std::sort(overlaps.begin(), overlaps.end());
+    return overlaps[overlaps.size() * 19 / 20];
+}
+
+TEST_F(UserScene, OfAFileHasTheOverlapOfItsContactsAsError) {
+    const SceneDescription scene = Stack();
+    const std::string file = (folder_ / "stack.json").string();
+    ASSERT_TRUE(WriteScene(file, scene));
+    const auto command = ParseLabCommand({"advise", file, "--error", "50%"});
+    ASSERT_TRUE(command) << command.GetError().message;
+    ASSERT_EQ(command.Value().lab.scenes.size(), 1u);
+    EXPECT_EQ(command.Value().lab.scenes[0]->FullName(), "stack.json");
+    const std::vector<RunRecord> runs = RunAt(command.Value().lab, {4, 16});
+    ASSERT_EQ(runs.size(), 2u);
+    EXPECT_GT(runs[1].Error(), 0);
+    EXPECT_GT(runs[0].Error(), 4 * runs[1].Error());  // with the square of the substeps
+    // To one step more or less.
+    for (const RunRecord& run : runs)
+        EXPECT_NEAR(run.Error() / OverlapByHand(scene, run.setting.solver.substeps), 1, 1e-3);
+    const std::string advice = AdviceForError({command.Value().lab.scenes[0], runs}, 0.5);
+    EXPECT_NE(advice.find("Cheapest setting with an error of at most 50 %"), std::string::npos) << advice;
+    EXPECT_NE(advice.find("stack.json"), std::string::npos) << advice;
+}
+
+TEST_F(UserScene, OfTheSamplesErrsLessWithMoreSubsteps) {
+    const auto command = ParseLabCommand({"advise", "bridge", "--budget", "2ms"});
+    ASSERT_TRUE(command) << command.GetError().message;
+    const std::vector<RunRecord> runs = RunAt(command.Value().lab, {1, 4, 16});
+    ASSERT_EQ(runs.size(), 3u);
+    EXPECT_GT(runs[0].Error(), runs[1].Error());
+    EXPECT_GT(runs[1].Error(), runs[2].Error());
+    for (const RunRecord& run : runs) EXPECT_TRUE(run.failedGates.empty());
+}
+
+TEST_F(UserScene, ThatCannotBeReadIsAnError) {
+    for (const char* name : {"nothing.json", "bridg"}) {
+        const auto command = ParseLabCommand({"advise", name, "--error", "1%"});
+        ASSERT_FALSE(command) << name;
+        EXPECT_NE(command.GetError().message.find(name[0] == 'n' ? "nothing.json" : "bridge"), std::string::npos)
+            << command.GetError().message;
+    }
+}
+
+}  // namespace
+}  // namespace fulcrum::accuracy
