@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/BodyInterface.h>
 
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/BodyBatch.h>
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
@@ -67,48 +68,68 @@ void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
     }
 }
 
+// The settings must be valid.
+BodyId Add(WorldState& world, const BodySettings& settings) {
+    const uint32_t body = world.bodies.Allocate();
+    BodyCold& cold = world.bodies.cold[body];
+    SetShapeOf(world, body, settings.shape);
+    cold.material = settings.material;
+    cold.userData = settings.userData;
+    cold.continuous = settings.continuous;
+    world.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
+    cold.isSensor = settings.isSensor;
+    world.bodies.SetPenetrationTarget(body, settings.penetrationTarget);
+    if (settings.reportsContacts) world.bodies.reportsContacts.Insert(body);
+    FillDynamics(world.bodies.dynamics[body], cold, settings);
+    world.bodies.SetRadii(body, *settings.shape);
+    world.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
+    if (cold.children) {
+        const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;
+        cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
+    }
+    world.bodies.SetCenterPose(body, CenterPose(*settings.shape, settings.position, Normalized(settings.rotation)));
+    SetVelocityOf(world, body, settings.linearVelocity, settings.angularVelocity);
+    world.bodies.UpdateInertia(body);
+    if (world.bodies.Count() == (world.bodies.worldBody == BodyStore::kNone ? 1u : 2u)) PlaceBoundsOrigin(world, body);
+    MakeColliders(world, body);
+    world.bodies.MarkPlaced(body);
+    if (settings.startAsleep) {
+        world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
+        if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
+    } else if (settings.motion != MotionType::Static) {
+        world.bodies.MarkAwake(body);
+        RequeueColliders(world.bodies, world.colliders, body);
+    } else {
+        RequeueColliders(world.bodies, world.colliders, body);
+    }
+    if (settings.isSensor) world.sensors.Add(world.bodies.IdOf(body), settings.sensorSees, settings.sensorReportsStay);
+    return world.bodies.IdOf(body);
+}
+
+uint32_t ColliderCountOf(const Shape& shape) {
+    return shape.IsCompound() ? static_cast<uint32_t>(static_cast<const CompoundShape&>(shape).Children().size()) : 1;
+}
+
 }  // namespace
 
 Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     const WorldLock::Exclusive alone(world_.lock);
     if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError error = Check(settings)) return *error;
-    const uint32_t body = world_.bodies.Allocate();
-    BodyCold& cold = world_.bodies.cold[body];
-    SetShapeOf(world_, body, settings.shape);
-    cold.material = settings.material;
-    cold.userData = settings.userData;
-    cold.continuous = settings.continuous;
-    world_.bodies.continuousCount += settings.continuous != ContinuousCollision::Off;
-    cold.isSensor = settings.isSensor;
-    world_.bodies.SetPenetrationTarget(body, settings.penetrationTarget);
-    if (settings.reportsContacts) world_.bodies.reportsContacts.Insert(body);
-    FillDynamics(world_.bodies.dynamics[body], cold, settings);
-    world_.bodies.SetRadii(body, *settings.shape);
-    world_.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
-    if (cold.children) {
-        const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;
-        cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
-    }
-    world_.bodies.SetCenterPose(body, CenterPose(*settings.shape, settings.position, Normalized(settings.rotation)));
-    SetVelocityOf(world_, body, settings.linearVelocity, settings.angularVelocity);
-    world_.bodies.UpdateInertia(body);
-    if (world_.bodies.Count() == (world_.bodies.worldBody == BodyStore::kNone ? 1u : 2u))
-        PlaceBoundsOrigin(world_, body);
-    MakeColliders(world_, body);
-    world_.bodies.MarkPlaced(body);
-    if (settings.startAsleep) {
-        world_.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
-        if (!world_.sensors.IsEmpty()) world_.sensors.changed.push_back(body);
-    } else if (settings.motion != MotionType::Static) {
-        world_.bodies.MarkAwake(body);
-        RequeueColliders(world_.bodies, world_.colliders, body);
-    } else {
-        RequeueColliders(world_.bodies, world_.colliders, body);
-    }
-    if (settings.isSensor)
-        world_.sensors.Add(world_.bodies.IdOf(body), settings.sensorSees, settings.sensorReportsStay);
-    return world_.bodies.IdOf(body);
+    return Add(world_, settings);
+}
+
+Result<std::vector<BodyId>> BodyInterface::Commit(const BodyBatch& batch) {
+    const WorldLock::Exclusive alone(world_.lock);
+    if (alone.Refusal()) return *alone.Refusal();
+    size_t colliders = 0;
+    for (const BodySettings& settings : batch.Bodies()) colliders += ColliderCountOf(*settings.shape);
+    world_.bodies.Reserve(batch.Bodies().size());
+    world_.colliders.Reserve(colliders);
+    std::vector<BodyId> ids;
+    ids.reserve(batch.Bodies().size());
+    for (const BodySettings& settings : batch.Bodies()) ids.push_back(Add(world_, settings));
+    return ids;
 }
 
 Status BodyInterface::Remove(BodyId id) {

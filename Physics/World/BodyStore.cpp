@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/World/BodyStore.h>
 
 #include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +28,19 @@ uint32_t BodyStore::Allocate() {
     if (notesSleepChanges) sleepChanges.push_back(index);
     ++count_;
     return index;
+}
+
+void BodyStore::Reserve(size_t more) {
+    const size_t grown = more - std::min(more, free_.size());
+    ReserveMore(states, grown);
+    ReserveMore(masses, grown);
+    ReserveMore(poses, grown);
+    ReserveMore(unconstrained, grown);
+    ReserveMore(dynamics, grown);
+    ReserveMore(cold, grown);
+    ReserveMore(remainders, grown);
+    ReserveMore(awake, more);
+    ReserveMore(placed, more);
 }
 
 void BodyStore::Free(uint32_t index) {

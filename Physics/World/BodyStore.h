@@ -226,6 +226,7 @@ public:
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
     uint32_t Count() const { return count_; }                             // of the bodies
+    void Reserve(size_t more);                                            // for so many more bodies
     uint32_t Allocate();                                                  // an index with default values; exists is set
     void Free(uint32_t index);                                            // after Remove: the index may be reused
     // Whether the id is that of an existing body; then id.index is its index.

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/World/ColliderStore.h>
 
 #include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 
 namespace fulcrum {
 
@@ -14,6 +15,12 @@ uint32_t ColliderStore::Allocate(uint32_t count) {
     colliders.resize(colliders.size() + count);
     shapes.resize(colliders.size());
     return first;
+}
+
+void ColliderStore::Reserve(size_t more) {
+    ReserveMore(colliders, more);
+    ReserveMore(shapes, more);
+    ReserveMore(moved, more);
 }
 
 void ColliderStore::Free(uint32_t first, uint32_t count) {

@@ -53,6 +53,7 @@ public:
     std::vector<ColliderRun> runs;                // further runs of bodies
 
     BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : staticTree; }
+    void Reserve(size_t more);          // for so many more colliders
     uint32_t Allocate(uint32_t count);  // index of the first of `count` consecutive ones
     void Free(uint32_t first, uint32_t count);
     uint32_t AddRun(uint32_t count);  // index of a further run
