@@ -162,6 +162,11 @@ void DescribePair(const BodyStore& bodies, const ColliderStore& colliders, PairS
 // Creates new pairs and activates resting ones, from sorted keys.
 void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std::span<const uint64_t> keys,
                    PairStore& pairs, std::vector<uint32_t>& activated, const StepWorkers& workers) {
+    // Where many bodies have been added, all of their pairs are: the arrays move once.
+    if (!pairs.HasRoomFor(keys.size()))
+        pairs.Reserve(static_cast<size_t>(std::ranges::count_if(keys, [&](uint64_t key) {
+            return pairs.Find(static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)) == PairStore::kNone;
+        })));
     const std::span<uint32_t> added = workers.scratch.Allocate<uint32_t>(keys.size());
     uint32_t count = 0;
     for (uint64_t key : keys) {

@@ -2,15 +2,17 @@
 
 #include <Fulcrum/Physics/World/HeapBytes.h>
 
+#include <algorithm>
+
 namespace fulcrum {
 
 namespace {
 
 // Grows by an eighth: doubling the largest arrays of a world would leave up to half unused.
 template <class T>
-void ReserveAnother(std::vector<T>& elements) {
+void ReserveAtLeast(std::vector<T>& elements, size_t count) {
     const size_t size = elements.size();
-    if (size == elements.capacity()) elements.reserve(size + size / 8 + 64);
+    if (count > elements.capacity()) elements.reserve(std::max(count, size + size / 8 + 64));
 }
 
 }  // namespace
@@ -43,6 +45,14 @@ void PairStore::Grow() {
     }
 }
 
+void PairStore::Reserve(size_t more) {
+    const size_t count = pairs.size() + more - std::min(more, free_.size());
+    ReserveAtLeast(pairs, count);
+    ReserveAtLeast(records, count);
+    ReserveAtLeast(links_, count);
+    ReserveAtLeast(loads, count);
+}
+
 uint32_t PairStore::Allocate() {
     uint32_t index;
     if (!free_.empty()) {
@@ -50,8 +60,8 @@ uint32_t PairStore::Allocate() {
         free_.pop_back();
     } else {
         index = static_cast<uint32_t>(pairs.size());
-        ReserveAnother(pairs);
-        ReserveAnother(records);
+        ReserveAtLeast(pairs, pairs.size() + 1);
+        ReserveAtLeast(records, records.size() + 1);
         pairs.emplace_back();
         records.emplace_back();
         links_.emplace_back();

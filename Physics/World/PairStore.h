@@ -71,6 +71,9 @@ public:
     static constexpr uint32_t kNone = ~0u;
     uint32_t Find(uint32_t colliderA, uint32_t colliderB) const;
     uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // must not exist yet
+    // So many pairs can be added without moving the others.
+    bool HasRoomFor(size_t more) const { return more <= free_.size() + (pairs.capacity() - pairs.size()); }
+    void Reserve(size_t more);
     // Adds a manifold to the pair `of`, between the same shapes and bodies. Not found by Find, and not active.
     uint32_t AddMore(uint32_t of);
     // Calls visit(pair) for all pairs of a collider, active or not, except additional manifolds; the visitor may remove

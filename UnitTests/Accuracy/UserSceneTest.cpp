@@ -54,7 +54,7 @@ SceneDescription Stack() {
 double OverlapByHand(SceneDescription scene, int substeps) {
     scene.settings.solver.substeps = substeps;
     scene.settings.sleep.enabled = false;
-    const auto system = std::move(PhysicsSystem::Create(scene.settings).Value());
+    const auto system = PhysicsSystem::Create(scene.settings).Value();
     EXPECT_TRUE(AddScene(*system, scene));
     std::vector<double> overlaps;
     for (int i = 1; i <= scene.steps; ++i) {

@@ -35,7 +35,7 @@ TEST(Base64, IsThatOfTheStandardBothWays) {
 }
 
 std::string HashAfter(const SceneDescription& description, int steps) {
-    auto system = std::move(PhysicsSystem::Create(description.settings).Value());
+    auto system = PhysicsSystem::Create(description.settings).Value();
     const Result<SceneIds> ids = AddScene(*system, description);
     if (!ids) return ids.GetError().message;
     for (int i = 0; i < steps; ++i) EXPECT_TRUE(system->Update(description.dt));
@@ -155,7 +155,7 @@ TEST(SceneFile, OfEverythingIsTheSameSceneBitByBit) {
 TEST(SceneFile, OfScenesStepsAsTheScenesDo) {
     for (const char* name : {"pyramid", "hull_pile", "friction_ramp", "path", "springs", "ragdolls", "gears"}) {
         const Scene& scene = *FindScene(name);
-        const auto original = std::move(SceneWorld::Create(scene).Value());
+        const auto original = SceneWorld::Create(scene).Value();
         const Result<ExportedScene> exported = ExportScene(scene, {});
         ASSERT_TRUE(exported) << name << ": " << exported.GetError().message;
         const Result<SceneDescription> read = SceneFromJson(SceneToJson(exported.Value().description).Value());
@@ -163,7 +163,7 @@ TEST(SceneFile, OfScenesStepsAsTheScenesDo) {
         const Scene ofFile = SceneOf(name, read.Value());
         SceneInput input;
         input.description = &read.Value();
-        const auto again = std::move(SceneWorld::Create(ofFile, input).Value());
+        const auto again = SceneWorld::Create(ofFile, input).Value();
         for (int i = 0; i < 20; ++i) {
             ASSERT_TRUE(original->Step(1.0 / 60));
             ASSERT_TRUE(again->Step(1.0 / 60));

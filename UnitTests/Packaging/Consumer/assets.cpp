@@ -8,7 +8,7 @@ int main() {
         {"shape": {"kind": "Plane"}, "motion": "Static"},
         {"name": "crate", "shape": {"kind": "Box", "halfExtents": [0.5, 0.5, 0.5]}, "position": [0, 2, 0]}]})");
     if (!scene) return std::puts(scene.GetError().message.c_str()), 1;
-    const auto system = std::move(fulcrum::PhysicsSystem::Create(scene.Value().settings).Value());
+    const auto system = fulcrum::PhysicsSystem::Create(scene.Value().settings).Value();
     const auto ids = fulcrum::AddScene(*system, scene.Value());
     if (!ids) return std::puts(ids.GetError().message.c_str()), 1;
     for (int i = 0; i < 120; ++i)
