@@ -246,6 +246,22 @@ TEST(SceneFile, ThatCannotBeAddedLeavesNothing) {
     EXPECT_EQ(joints, 0u);
 }
 
+// The chest of 1 m, whose lid turns about its upper edge at z = -0.5 by a quarter, onto its top.
+TEST(SceneFile, TheExampleOfTheDocumentFallsShut) {
+    std::ifstream file(FULCRUM_SOURCE_DIR "/Docs/SceneFiles.md");
+    const std::string page((std::istreambuf_iterator<char>(file)), {});
+    const size_t begin = page.find("```json\n") + 8;
+    const Result<SceneDescription> scene = SceneFromJson(page.substr(begin, page.find("```", begin) - begin));
+    ASSERT_TRUE(scene) << scene.GetError().message;
+    const auto system = PhysicsSystem::Create(scene.Value().settings).Value();
+    const Result<SceneIds> ids = AddScene(*system, scene.Value());
+    ASSERT_TRUE(ids) << ids.GetError().message;
+    for (int i = 0; i < scene.Value().steps; ++i) ASSERT_TRUE(system->Update(scene.Value().dt));
+    const Position lid = system->Bodies().GetPose(ids.Value().bodies[2]).position;
+    EXPECT_NEAR(lid.y(), 1.05, 0.01);
+    EXPECT_NEAR(lid.z(), 0, 0.01);
+}
+
 // With FULCRUM_WRITE_SCHEMA=1 it writes the file anew.
 TEST(SceneFile, TheSchemaIsThatOfTheFields) {
     constexpr const char* kFile = FULCRUM_SOURCE_DIR "/Assets/scene.schema.json";
