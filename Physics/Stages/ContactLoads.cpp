@@ -116,7 +116,8 @@ void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const
         const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * step.softness;
         const float part = sink / SizeOf(lighter);
         const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
-        if (!(part > target)) continue;
+        const float springs = IsLoad(upper, lower, target, step) ? kLoadedSubstep * kLoadedSubstep : 1;
+        if (!(springs * part > target)) continue;
         const uint32_t level = LevelOf(part / LargestUnnoted(target));
         LoadLevel& load = pairs.loads[index];
         if (level <= load.level) continue;

@@ -88,6 +88,15 @@ inline float SquaredSizeOf(const BodyDynamics& body) {
 }
 inline float SizeOf(const BodyDynamics& body) { return std::sqrt(SquaredSizeOf(body)); }
 
+// Whether a body that lies on one of an eighth of its mass or less is a load, however little that sinks: springs as
+// stiff as they can be would hardly damp it, so its island gets softer ones (Effort.h: kLoadedSubstep). A load of kCalm
+// weights comes to rest all the same; where it would sink by the target, heavier ones get more effort anyway.
+constexpr float kHeavy = 8, kCalm = 24;
+inline bool IsLoad(const BodyDynamics& heavier, const BodyDynamics& lighter, float target, const StepContext& step) {
+    return lighter.inverseMass > kHeavy * heavier.inverseMass && heavier.inverseMass > 0 &&
+           kCalm * Length(step.settings.gravity) * step.softness <= target * SizeOf(lighter);
+}
+
 // Initializes the levels of new contacts from the weights of the bodies that they carry: their impulses take many steps
 // to build up, the more the lighter the lower body is. began: pairs. Called by BuildIslands.
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
