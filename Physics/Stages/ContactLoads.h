@@ -102,6 +102,11 @@ inline bool IsLoad(const BodyDynamics& heavier, const BodyDynamics& lighter, flo
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
                  const JointStore& joints, PairStore& pairs);
 
+// Raises the levels of all contacts to what their forces of the last step require in a longer one: it would begin with
+// springs that are too soft, and stacks would fall by several sinks. Called by BuildIslands.
+void NoteForces(const StepContext& step, const ConstraintColoring& coloring, const BodyStore& bodies,
+                const JointStore& joints, PairStore& pairs);
+
 // Updates the load levels of a batch's pairs from their sinks. Loads must persist for some steps. Contacts of jointed
 // bodies, whose size is undefined, are left out. Returns whether any level changed.
 template <int N, bool kFixedB>
