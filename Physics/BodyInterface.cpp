@@ -13,6 +13,7 @@
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -110,6 +111,51 @@ uint32_t ColliderCountOf(const Shape& shape) {
     return shape.IsCompound() ? static_cast<uint32_t>(static_cast<const CompoundShape&>(shape).Children().size()) : 1;
 }
 
+// Calls visit(record) for the contacts of a pair in the last step.
+template <class Visit>
+void VisitRecords(PairStore& pairs, uint32_t pair, Visit&& visit) {
+    for (; pair != PairStore::kNone; pair = pairs.pairs[pair].more)
+        if (pairs.pairs[pair].touching) visit(pairs.records[pair]);
+}
+// N s, along the normals.
+float ImpulseOf(PairStore& pairs, uint32_t pair) {
+    float sum = 0;
+    VisitRecords(pairs, pair, [&](const ContactRecord& record) {
+        for (const float impulse : record.impulse) sum += impulse;
+    });
+    return sum;
+}
+
+// What carried `load` N s of the body `from`, which goes, and little else, forgets it, and so does what is below it:
+// the impulses with which the next step begins would throw it up. from: kNone for `body` itself, whose contacts are
+// only read.
+constexpr int kDeepest = 64;
+void Unload(WorldState& world, uint32_t body, uint32_t from, float load, int depth = 0) {
+    std::vector<std::pair<uint32_t, float>> contacts;
+    float sum = 0;
+    VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body, 1}, [&](uint32_t pair) {
+        const Pair& of = world.pairs.pairs[pair];
+        if (of.bodyA == from || of.bodyB == from) return;
+        contacts.emplace_back(pair, ImpulseOf(world.pairs, pair));
+        sum += contacts.back().second;
+    });
+    constexpr float kMost = 0.75f;  // of what it carries: less is left to the solver
+    if (!(sum > 0 && load > kMost * sum)) return;
+    const float part = from == BodyStore::kNone ? 1 : std::max(1 - load / sum, 0.0f);
+    for (const auto& [pair, impulse] : contacts) {
+        if (!(impulse > 0)) continue;
+        VisitRecords(world.pairs, pair, [&](ContactRecord& record) {
+            for (float& i : record.impulse) i *= part;
+            for (float& i : record.frictionImpulse) i *= part;
+            record.twistImpulse *= part;
+        });
+        const Pair& of = world.pairs.pairs[pair];
+        const uint32_t other = of.bodyA == body ? of.bodyB : of.bodyA;
+        if (depth < kDeepest && world.bodies.dynamics[other].inverseMass > 0)
+            Unload(world, other, body, from == BodyStore::kNone ? impulse : (1 - part) * impulse, depth + 1);
+    }
+}
+
 }  // namespace
 
 Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
@@ -139,6 +185,8 @@ Status BodyInterface::Remove(BodyId id) {
     const uint32_t body = id.index;
     WakeBody(world_, body);
     WakeNeighbors(world_, body);
+    if (world_.bodies.dynamics[body].inverseMass > 0)
+        Unload(world_, body, BodyStore::kNone, std::numeric_limits<float>::infinity());
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
     world_.bodies.continuousCount -= cold.continuous != ContinuousCollision::Off;

@@ -166,11 +166,11 @@ MaybeError Check(const SystemSettings& s) {
     constexpr double kMost = 1e6;
     if (MaybeError e = FirstOf(
             CheckFinite("gravity", s.gravity), CheckRange("gravity", double{s.gravity.cwiseAbs().maxCoeff()}, 0, kMost),
-            CheckRange("solver.substeps", s.solver.substeps, 1, 64),
+            CheckRange("solver.substeps", s.solver.substeps, 1, 255),
             CheckPositiveOrInfinite("accuracy.penetration", s.accuracy.penetration),
             CheckPositiveOrInfinite("accuracy.jointError", s.accuracy.jointError),
             CheckPositiveOrInfinite("accuracy.drift", s.accuracy.drift),
-            CheckRange("accuracy.mostSubsteps", s.accuracy.mostSubsteps, 1, 64),
+            CheckRange("accuracy.mostSubsteps", s.accuracy.mostSubsteps, 1, 255),
             CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
             CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),
             CheckEnum("solver.positionCorrection", s.solver.positionCorrection, PositionCorrection::Baumgarte),

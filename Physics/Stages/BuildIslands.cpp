@@ -187,6 +187,7 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
                   std::span<const uint32_t> began, PairStore& pairs, JointStore& joints, SolverLayout& layout,
                   SavedEfforts& saved, ScratchArena& scratch) {
     NoteWeights(step, began, bodies, joints, pairs);
+    if (step.Lengthens()) NoteForces(step, coloring, bodies, joints, pairs);
     const auto stiffen = [](auto& groups) {
         for (auto& group : groups)
             if (group.stiffness < group.wantedStiffness) ++group.stiffness;

@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 
+#include <Fulcrum/Physics/Stages/FindIslands.h>
+
 #include <algorithm>
 #include <bit>
 
@@ -116,13 +118,38 @@ void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const
         const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * step.softness;
         const float part = sink / SizeOf(lighter);
         const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
-        if (!(part > target)) continue;
+        const float springs = IsLoad(upper, lower, target, step) ? kLoadedSubstep * kLoadedSubstep : 1;
+        if (!(springs * part > target)) continue;
         const uint32_t level = LevelOf(part / LargestUnnoted(target));
         LoadLevel& load = pairs.loads[index];
         if (level <= load.level) continue;
         load.level = load.recent = static_cast<uint8_t>(level);
         ++pairs.loadVersion;
     }
+}
+
+void NoteForces(const StepContext& step, const ConstraintColoring& coloring, const BodyStore& bodies,
+                const JointStore& joints, PairStore& pairs) {
+    if (!AdaptsToLoads(step.settings, bodies)) return;
+    using Kind = ConstraintColoring::Kind;
+    const auto note = [&](uint32_t, const ConstraintColoring::Entry& entry) {
+        float impulse = 0;
+        for (const float i : pairs.records[entry.constraint].impulse) impulse += i;
+        const Pair& pair = pairs.pairs[entry.constraint];
+        const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
+        const BodyDynamics& lighter = b.inverseMass > a.inverseMass ? b : a;
+        const float part = impulse / step.lastSubstepDt * lighter.inverseMass * step.softness / SizeOf(lighter);
+        const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
+        const uint32_t level = LevelOf(part / LargestUnnoted(target));
+        LoadLevel& load = pairs.loads[entry.constraint];
+        load.stiffness = 0;  // the springs of the shorter step were stiffer than any of this one
+        if (level <= load.level || IsLeftOut(bodies, joints, pair)) return;
+        load.level = load.recent = static_cast<uint8_t>(level);
+        load.steps = 0;
+    };
+    VisitEntries(coloring, Kind::Moving, note);
+    VisitEntries(coloring, Kind::Fixed, note);
+    ++pairs.loadVersion;
 }
 
 template <int N, bool kFixedB>

@@ -88,10 +88,24 @@ inline float SquaredSizeOf(const BodyDynamics& body) {
 }
 inline float SizeOf(const BodyDynamics& body) { return std::sqrt(SquaredSizeOf(body)); }
 
+// Whether a body that lies on one of an eighth of its mass or less is a load, however little that sinks: springs as
+// stiff as they can be would hardly damp it, so its island gets softer ones (Effort.h: kLoadedSubstep). A load of kCalm
+// weights comes to rest all the same; where it would sink by the target, heavier ones get more effort anyway.
+constexpr float kHeavy = 8, kCalm = 24;
+inline bool IsLoad(const BodyDynamics& heavier, const BodyDynamics& lighter, float target, const StepContext& step) {
+    return lighter.inverseMass > kHeavy * heavier.inverseMass && heavier.inverseMass > 0 &&
+           kCalm * Length(step.settings.gravity) * step.softness <= target * SizeOf(lighter);
+}
+
 // Initializes the levels of new contacts from the weights of the bodies that they carry: their impulses take many steps
 // to build up, the more the lighter the lower body is. began: pairs. Called by BuildIslands.
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
                  const JointStore& joints, PairStore& pairs);
+
+// Raises the levels of all contacts to what their forces of the last step require in a longer one: it would begin with
+// springs that are too soft, and stacks would fall by several sinks. Called by BuildIslands.
+void NoteForces(const StepContext& step, const ConstraintColoring& coloring, const BodyStore& bodies,
+                const JointStore& joints, PairStore& pairs);
 
 // Updates the load levels of a batch's pairs from their sinks. Loads must persist for some steps. Contacts of jointed
 // bodies, whose size is undefined, are left out. Returns whether any level changed.

@@ -41,23 +41,23 @@ inline float LeastDampingRatio(float frequency, float h) {
 // The fraction of a tree's errors that a substep corrects.
 inline constexpr float kTreePush = 0.5f;
 
-// SolverGroup::stiffness counts powers of this factor of the system's substep.
-inline constexpr float kStiffnessStep = 0.957603281f;  // 2^(-1/16)
-inline float SubstepOfStiffness(uint32_t stiffness) {
-    float part = 1;
-    for (uint32_t i = 1; i < stiffness; ++i) part *= kStiffnessStep;
-    return part;
-}
 // The stiffest springs hardly damp slow modes (Docs/Step.md). The springs of islands under load are half as stiff:
 // those of substeps longer by this factor.
 inline constexpr float kLoadedSubstep = 1.41421356f;
-// The stiffness of a group that is solved with more substeps than the system's, with springs of substeps `longer` times
-// its own, but no longer than the system's.
+// SolverGroup::stiffness counts powers of this factor, from kLoadedSubstep times the system's substep.
+inline constexpr float kStiffnessStep = 0.957603281f;  // 2^(-1/16)
+inline constexpr uint8_t kUsualStiffness = 9;          // of the system's substep
+inline float SubstepOfStiffness(uint32_t stiffness) {
+    float part = kLoadedSubstep;
+    for (uint32_t i = 1; i < stiffness; ++i) part *= kStiffnessStep;
+    return part;
+}
+// The stiffness of a group with springs of substeps `longer` times its own.
 inline uint8_t StiffnessOf(int substeps, int systemSubsteps, float longer) {
-    const float own = static_cast<float>(systemSubsteps) / static_cast<float>(substeps);
-    const float part = std::max(own, std::min(own * longer, 1.0f));
+    const float part = longer * static_cast<float>(systemSubsteps) / static_cast<float>(substeps);
+    constexpr float kRounding = 1.0001f;
     uint8_t stiffness = 1;
-    for (float substep = 1; substep > part; substep *= kStiffnessStep) ++stiffness;
+    for (float substep = kLoadedSubstep; substep > kRounding * part; substep *= kStiffnessStep) ++stiffness;
     return stiffness;
 }
 

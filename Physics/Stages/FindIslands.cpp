@@ -37,7 +37,7 @@ void SetEffort(SolverGroup& group, const IslandEffort& effort, const JointSubste
     group.effort = effort.least;
     group.culprit = effort.culprit;
     if (group.effort.Raise({.substeps = static_cast<uint8_t>(joints.substeps)})) group.culprit = joints.body;
-    if (!effort.isLoaded || group.effort.substeps <= usual) return;
+    if (!effort.isLoaded || group.effort.substeps < usual) return;
     group.wantedStiffness = StiffnessOf(group.effort.substeps, usual, effort.longer);
     group.stiffness = effort.stiffness == 0 ? group.wantedStiffness : std::min(effort.stiffness, group.wantedStiffness);
 }

@@ -64,8 +64,6 @@ constexpr float kBucklingOfLarge = 110;
 constexpr float kWeights = 2;
 // Minimum number of constraints of an island that may buckle.
 constexpr uint32_t kLeastHigh = 4;
-// At the maximum number of substeps, loads ask for more iterations: at most this many.
-constexpr int kMostIterations = 4;
 
 struct Need {
     // Ratio of the sink of an island's contacts, or of the gap of its joints, to its target, with the system's
@@ -74,11 +72,16 @@ struct Need {
     uint32_t culprit = ~0u;  // the body with that contact or joint
     uint8_t stiffness = 0;   // minimum over the loaded contacts of the last step; 0: none
     bool isStiff = false;    // whether it needs the stiffest springs, as gaps of joints do
+    bool isLoaded = false;   // whether a body lies on a much lighter one, see IsLoad
 
     void Raise(float to, uint32_t body) {
         if (!(need < to)) return;
         need = to;
         culprit = body;
+    }
+    void Load(uint32_t body) {
+        isLoaded = true;
+        if (culprit == ~0u) culprit = body;
     }
     void Soften(uint8_t to) { stiffness = stiffness == 0 ? to : std::min(stiffness, to); }
 };
@@ -86,12 +89,14 @@ struct Need {
 class LoadEfforts {
 public:
     LoadEfforts(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
-                const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded, UnionFind& sets,
-                std::span<Need> needs, ScratchArena& scratch)
-        : settings_(step.settings),
+                const JointStore& joints, const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded,
+                UnionFind& sets, std::span<Need> needs, ScratchArena& scratch)
+        : step_(step),
+          settings_(step.settings),
           softness_(step.softness),
           bodies_(bodies),
           coloring_(coloring),
+          joints_(joints),
           pairs_(pairs),
           sizes_(sizes),
           mostLoaded_(mostLoaded),
@@ -112,6 +117,7 @@ public:
         for (uint32_t i = 0; i < places_.size(); ++i)
             if (places_[i] != kNone) AddNeedOfColumn(i, extents_[places_[i]]);
         AddNeedsOfLarge();
+        FindLoads();
     }
 
 private:
@@ -161,8 +167,12 @@ private:
         const float weights = kWeights * Length(settings_.gravity) * softness_;
         for (uint32_t i = 0; i < bodies_.awake.size(); ++i) {
             const BodyDynamics& body = bodies_.dynamics[bodies_.awake[i]];
-            const float least = weights / TargetOf(bodies_.awake[i]);
-            if (!(SquaredSizeOf(body) < least * least)) continue;
+            const float least = weights / TargetOf(bodies_.awake[i]), size = SquaredSizeOf(body);
+            // Those that may be loaded (IsLoad), and the heaviest.
+            constexpr float kSquared = (kCalm / kWeights) * (kCalm / kWeights);
+            if (size >= kSquared * least * least) lightest_ = std::max(lightest_, body.inverseMass);
+            if (body.inverseMass > 0) heaviest_ = std::min(heaviest_, body.inverseMass);
+            if (!(size < least * least)) continue;
             const uint32_t root = sets_.Find(i);
             if (sizes_[root] > mostLoaded_) needs_[root].Raise(least / SizeOf(body), bodies_.awake[i]);
         }
@@ -182,6 +192,26 @@ private:
         if (isLarge) sink /= std::sqrt((1 + narrow / (size * size)) * (1 + wide / (size * size)));
         needs_[root].Raise(sink / extent.target * BucklingFactor(size, extent, isLarge ? kBucklingOfLarge : kBuckling),
                            extent.lightest);
+    }
+
+    // Marks the islands where a heavy body lies on a light one.
+    void FindLoads() {
+        if (!(lightest_ > kHeavy * heaviest_)) return;
+        const Vector3 g = step_.settings.gravity;
+        VisitEntries(coloring_, Kind::Moving, [&](uint32_t, const Entry& entry) {
+            if (entry.fixedA || entry.fixedB) return;
+            const BodyDynamics &a = bodies_.dynamics[entry.bodyA], &b = bodies_.dynamics[entry.bodyB];
+            const bool isALighter = a.inverseMass > b.inverseMass;
+            const BodyDynamics &lighter = isALighter ? a : b, &heavier = isALighter ? b : a;
+            const uint32_t light = isALighter ? entry.bodyA : entry.bodyB,
+                           heavy = isALighter ? entry.bodyB : entry.bodyA;
+            if (!IsLoad(heavier, lighter, TargetOf(light), step_)) return;
+            const uint32_t root = RootOf(light);
+            if (sizes_[root] > mostLoaded_ || joints_.HasAny(light) || joints_.HasAny(heavy)) return;
+            const Position rise = bodies_.CenterOf(heavy) - bodies_.CenterOf(light);
+            if (rise.x() * double{g.x()} + rise.y() * double{g.y()} + rise.z() * double{g.z()} < 0)
+                needs_[root].Load(light);
+        });
     }
 
     // The lighter one of the dynamic bodies of a contact.
@@ -208,10 +238,12 @@ private:
         if (load.stiffness > 0 && needOf(std::max(load.level, load.recent)) > 1) most.Soften(load.stiffness);
     }
 
+    const StepContext& step_;
     const SystemSettings& settings_;
     float softness_;
     const BodyStore& bodies_;
     const ConstraintColoring& coloring_;
+    const JointStore& joints_;
     const PairStore& pairs_;
     std::span<const uint32_t> sizes_;
     uint32_t mostLoaded_;
@@ -220,21 +252,25 @@ private:
     static constexpr Extent kLow{};
     std::span<uint32_t> places_;  // by root, index in extents_; kNone: only its loads count
     std::span<Extent> extents_;
-    std::span<Need> needs_;  // by root
+    std::span<Need> needs_;                                                   // by root
+    float lightest_ = 0, heaviest_ = std::numeric_limits<float>::infinity();  // 1/kg, see AddNeedsOfLarge
 };
 
 // The effort at which contacts sink `need` times less than with the system's settings: substeps, with whose square
-// sinks fall, then passes. In powers of two, so that efforts seldom change. Leaves the part of the need that is not
-// met: at most 1 if all of it is.
-SolverSettings EffortFor(float& need, const SystemSettings& settings) {
-    const int mostSubsteps = std::max(settings.accuracy.mostSubsteps, settings.solver.substeps);
+// sinks fall. Not iterations: loads rattle on light legs with two relax iterations and more, and a step of N substeps
+// of one iteration costs less than any other that is as stiff. Gaps of joints get iterations beyond 64 substeps. In
+// powers of two, so that efforts seldom change. Leaves the part of the need that is not met: at most 1 if all of it is.
+SolverSettings EffortFor(float& need, bool hasGaps, const SystemSettings& settings) {
+    constexpr int kMostForGaps = 64, kMostIterations = 4;
+    const int most = hasGaps ? std::min(settings.accuracy.mostSubsteps, kMostForGaps) : settings.accuracy.mostSubsteps;
+    const int mostSubsteps = std::max(most, settings.solver.substeps);
     SolverSettings effort = settings.solver;
     for (float factor = 1; need > 1 && effort.substeps < mostSubsteps; need *= 0.5f) {
         factor *= 1.41421356f;
         const int substeps = static_cast<int>(std::ceil(factor * static_cast<float>(settings.solver.substeps) - 0.01f));
         effort.substeps = std::min(substeps, mostSubsteps);
     }
-    for (; need > 1 && effort.velocityIterations < kMostIterations; need *= 0.5f) {
+    for (; hasGaps && need > 1 && effort.velocityIterations < kMostIterations; need *= 0.5f) {
         effort.velocityIterations *= 2;
         effort.positionIterations = std::max(effort.positionIterations, effort.velocityIterations);
     }
@@ -275,16 +311,16 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
     });
     if (AdaptsToLoads(step.settings, bodies))
-        LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
+        LoadEfforts(step, bodies, coloring, joints, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
     else if (!adaptsToGaps) return efforts;
     for (size_t i = 0; i < count; ++i) {
-        if (!(needs[i].need > 1)) continue;
+        if (!(needs[i].need > 1) && !needs[i].isLoaded) continue;
         // Islands under load get springs half as stiff as the stiffest, unless the maximum effort does not suffice
-        // then.
+        // then. A need is up to twice what the island needs.
         const float softer = needs[i].isStiff || sizes[i] > mostLoaded ? 1 : kLoadedSubstep * kLoadedSubstep;
         float need = needs[i].need * softer;
-        const SolverSettings effort = EffortFor(need, step.settings);
-        efforts[i].longer = std::sqrt(softer / std::clamp(need, 1.0f, softer));
+        const SolverSettings effort = EffortFor(need, needs[i].isStiff, step.settings);
+        efforts[i].longer = std::sqrt(softer / std::clamp(0.5f * need, 1.0f, softer));
         RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;
         efforts[i].stiffness = needs[i].stiffness;

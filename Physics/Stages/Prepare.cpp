@@ -158,7 +158,7 @@ public:
               PairStore& pairs, JointStore& joints, SolverLayout& layout)
         : contacts_{bodies,
                     pairs,
-                    {.impulseScale = step.impulseScale * effort.impulseScale,
+                    {.impulseScale = step.contactImpulseScale * effort.impulseScale,
                      .restitutionSpeed = step.settings.restitutionSpeed,
                      .maxPushSpeed = step.settings.contactPushSpeed,
                      .dt = step.dt,

@@ -25,8 +25,8 @@ struct SolverGroup {
     LeastEffort effort{};                     // minimum effort, if more than the system's
     uint32_t culprit = ~0u;                   // the body that requires most of it
     // For islands under load: the substep that determines the stiffness of soft rows, as a fraction of the system's:
-    // 2^(-(i - 1) / 16). It follows shorter substeps slowly: a sudden increase of stiffness would accelerate bodies
-    // that have sunk with softer rows. 0: the stiffness of the actual substeps.
+    // 2^(-(i - 9) / 16) (Effort.h). It follows shorter substeps slowly: a sudden increase of stiffness would accelerate
+    // bodies that have sunk with softer rows. 0: the stiffness of the actual substeps.
     uint8_t stiffness = 0, wantedStiffness = 0;
     uint32_t treesBegin = 0, treesEnd = 0;  // into SolverLayout::treesByGroup
     bool HasTrees() const { return treesEnd > treesBegin; }

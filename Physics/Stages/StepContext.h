@@ -19,9 +19,14 @@ struct StepContext {
     uint64_t number;                  // of the step, 1 for the first
     float dt;                         // s, > 0
     float substepDt;                  // s, of the settings' substeps
-    float impulseScale;               // dt of its substeps / dt of the last step's, at most 2: scales the warm start
+    float lastSubstepDt;              // s, of the last step; 0: there was none
+    float impulseScale;               // substepDt / lastSubstepDt, at most 2: scales the warm start of joints
+    float contactImpulseScale;        // likewise of contacts, at most 8
     float stiffnessDt;                // s: maximum over the last substeps; limits the stiffness of contacts and joints
     float softness;                   // s^2, of contacts in the settings' substeps: see SinkScale
+
+    // Whether springs that suffice in the last step are too soft in this one.
+    bool Lengthens() const { return substepDt > 1.5f * lastSubstepDt && lastSubstepDt > 0; }
 };
 
 // The workers and scratch memory of a stage.

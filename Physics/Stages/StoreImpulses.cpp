@@ -70,14 +70,14 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                          .softness = step.softness,
                          .depthScale = 1 / (springs * springs),
                          .gravity = settings.gravity,
-                         .stiffness = std::max<uint8_t>(stiffness, 1),
+                         .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
                          .forgets = step.number % kStepsToForget == 0};
     };
     const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
         return GapScale{.target = settings.accuracy.jointError,
                         .drift = DriftIn(settings.accuracy, impulseScale),
                         .impulseScale = impulseScale,
-                        .stiffness = std::max<uint8_t>(stiffness, 1),
+                        .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
                         .forgets = step.number % kStepsToForget == 0};
     };
     uint32_t stored[kBatchKinds] = {};
@@ -88,8 +88,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
             stored[kind] = end;
         });
     };
-    const SinkScale usualSink = sinkScaleOf(1, 1, 1);
-    const GapScale usualGap = gapScaleOf(1, 1);
+    const SinkScale usualSink = sinkScaleOf(1, 1, kUsualStiffness);
+    const GapScale usualGap = gapScaleOf(1, kUsualStiffness);
     const StoreScale usual{step.dt, 1, notesSinks ? &usualSink : nullptr, notesGaps ? &usualGap : nullptr};
     for (const SolverGroup& group : layout.groups) {
         const bool isFirst = &group == &layout.groups.front();

@@ -134,7 +134,7 @@ void AddSolverOptions(CLI::App& app, SolverSettings& solver) {
     const auto text = [](const char* what, int value) {
         return std::string(what) + " (default " + std::to_string(value) + ")";
     };
-    AddInteger(app, "--substeps", 1, 64, text("solver substeps a step", solver.substeps),
+    AddInteger(app, "--substeps", 1, 255, text("solver substeps a step", solver.substeps),
                [&](int value) { solver.substeps = value; });
     AddInteger(app, "--velocity-iterations", 1, 255, text("velocity iterations a substep", solver.velocityIterations),
                [&](int value) { solver.velocityIterations = value; });

@@ -43,7 +43,7 @@ TEST_P(ExtremeSettings, KeepWhatNoEffortMayBreak) {
     const LabScene& scene = GetParam();
     ThreadPool two(2);
     // 4096 spheres at one point take minutes with more substeps.
-    const int mostSubsteps = scene.FullName() == "coincident.4096" ? 4 : 64;
+    const int mostSubsteps = scene.FullName() == "coincident.4096" ? 4 : 128;
     for (const Setting& setting : PresetsAndOddSettings()) {
         if (setting.solver.substeps > mostSubsteps) continue;
         LabRun one(setting, scene.parameter, true, 1), other(setting, scene.parameter, true, 1, &two);

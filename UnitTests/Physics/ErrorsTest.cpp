@@ -158,7 +158,7 @@ TEST(Errors, ABadSystemIsNotCreated) {
     const std::vector<Bad> list{
         {"gravity", ErrorCode::NonFinite, [](S& s) { s.gravity.x() = kNaN; }},
         {"substeps", ErrorCode::OutOfRange, [](S& s) { s.solver.substeps = 0; }},
-        {"substeps", ErrorCode::OutOfRange, [](S& s) { s.solver.substeps = 65; }},
+        {"substeps", ErrorCode::OutOfRange, [](S& s) { s.solver.substeps = 256; }},
         {"velocityIterations", ErrorCode::OutOfRange, [](S& s) { s.solver.velocityIterations = 0; }},
         {"velocityIterations", ErrorCode::OutOfRange, [](S& s) { s.solver.velocityIterations = 256; }},
         {"positionIterations", ErrorCode::OutOfRange, [](S& s) { s.solver.positionIterations = -1; }},
@@ -171,7 +171,7 @@ TEST(Errors, ABadSystemIsNotCreated) {
         {"baumgarte", ErrorCode::NonFinite, [](S& s) { s.solver.baumgarte = kNaN; }},
         {"accuracy.penetration", ErrorCode::NonPositive, [](S& s) { s.accuracy.penetration = 0; }},
         {"accuracy.penetration", ErrorCode::NonFinite, [](S& s) { s.accuracy.penetration = kNaN; }},
-        {"accuracy.mostSubsteps", ErrorCode::OutOfRange, [](S& s) { s.accuracy.mostSubsteps = 65; }},
+        {"accuracy.mostSubsteps", ErrorCode::OutOfRange, [](S& s) { s.accuracy.mostSubsteps = 256; }},
         {"sleep.seconds", ErrorCode::Negative, [](S& s) { s.sleep.seconds = -1; }},
         {"sleep.linearSpeed", ErrorCode::NonFinite, [](S& s) { s.sleep.linearSpeed = kInfinite; }},
         {"speculativeDistance", ErrorCode::NonPositive, [](S& s) { s.speculativeDistance = 0; }},

@@ -176,19 +176,32 @@ TEST(Rest, WhatALoadLeavesRisesNoHigherThanItsPlace) {
     }
 }
 
-// Springs as stiff as the short ones of these steps allow would throw up what the long ones let sink.
+// Springs as stiff as the short ones of these steps allow would throw up what the long ones let sink; long ones that
+// begin with a part of their load, or with the effort of short ones, let it drift by centimeters.
 TEST(Rest, AStackOutOfLineStandsWhileStepsAlternate) {
-    SystemSettings settings = NoSleep();
-    settings.solver.substeps = 16;
-    TestWorld world(settings);
-    world.AddFloor();
-    std::vector<BodyId> stack;
-    for (int i = 0; i < 6; ++i)
-        stack.push_back(
-            world.Add({.shape = CubeOf(0.5f), .position = {0.01 * (i * 7 % 3 - 1), 0.5 + i, 0.01 * (i * 5 % 3 - 1)}}));
-    for (int i = 0; i < 600; ++i) world.Step(i % 2 == 0 ? 1.0 / 240 : 1.0 / 30);
-    for (size_t i = 0; i < stack.size(); ++i)
-        EXPECT_NEAR(world.PositionOf(stack[i]).y(), 0.5 + static_cast<double>(i), 0.03) << i;
+    struct Case {
+        double shorter, longer;  // s
+        int each;                // so many steps of the one, then of the other
+    };
+    for (const int substeps : {4, 16})
+        for (const Case& steps :
+             {Case{1.0 / 240, 1.0 / 30, 1}, Case{1.0 / 60, 1.0 / 30, 1}, Case{1.0 / 240, 1.0 / 30, 30}})
+            for (const int boxes : {6, 10, 20}) {
+                SystemSettings settings = NoSleep();
+                settings.solver.substeps = substeps;
+                TestWorld world(settings);
+                world.AddFloor();
+                std::vector<BodyId> stack;
+                std::vector<Position> starts;
+                for (int i = 0; i < boxes; ++i) {
+                    starts.push_back({0.01 * (i * 7 % 3 - 1), 0.5 + i, 0.01 * (i * 5 % 3 - 1)});
+                    stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = starts.back()}));
+                }
+                for (int i = 0; i < 600; ++i) world.Step(i / steps.each % 2 == 0 ? steps.shorter : steps.longer);
+                for (size_t i = 0; i < stack.size(); ++i)
+                    EXPECT_LT((world.PositionOf(stack[i]) - starts[i]).norm(), 0.02)
+                        << substeps << " substeps, " << boxes << " boxes, " << steps.longer << " s, " << i;
+            }
 }
 
 }  // namespace

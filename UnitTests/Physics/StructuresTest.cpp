@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fulcrum::testing {
@@ -108,7 +109,7 @@ TEST(Structures, ALoadSinksLittleAtTheDefaultsAndNothingJumpsWhenItIsTaken) {
                 loaded.world.Step();
                 rise = std::max(rise, loaded.world.PositionOf(cube).y() - 0.5);
             }
-            EXPECT_LT(rise, ratio < 200 ? 1e-4 : 0.003) << ratio << " from " << height << ", had sunk by " << sunk;
+            EXPECT_LT(rise, ratio < 2000 ? 1e-4 : 0.001) << ratio << " from " << height << ", had sunk by " << sunk;
             if (ratio == 100) {
                 EXPECT_LT(rise + sunk, 0.001) << ratio << " from " << height;
             }
@@ -117,23 +118,35 @@ TEST(Structures, ALoadSinksLittleAtTheDefaultsAndNothingJumpsWhenItIsTaken) {
 
 // With the stiffest springs, which damp what is slow hardly at all, 10^4 times the weight jumped at 0.5 m/s for ever at
 // steps of 1/240 s.
-TEST(Structures, LoadsComeToRestAtEveryTimeStep) {
+TEST(Structures, LoadsComeToRestAtEveryTimeStepAndEffort) {
     for (const double dt : {1.0 / 30, kStep, 1.0 / 240})
-        for (const float ratio : {10.0f, 100.0f, 1000.0f, 1e4f}) {
-            Structure loaded;
+        for (const auto& [ratio, substeps] : {std::pair(10.0f, 4),
+                                              {100.0f, 4},
+                                              {1000.0f, 4},
+                                              {1e4f, 4},
+                                              {100.0f, 16},
+                                              {1000.0f, 16},
+                                              {1000.0f, 64},
+                                              {1e4f, 64}}) {
+            SystemSettings settings = NoSleep();
+            settings.solver.substeps = substeps;
+            Structure loaded(settings);
             loaded.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .mass = 1000});
             loaded.Add({.shape = CubeOf(0.5f), .position = {0, 1.5, 0}, .mass = 1000 * ratio});
             loaded.world.Run(5, dt);
-            EXPECT_LT(loaded.world.Report().largestPenetration, 0.005f) << ratio << " at " << dt;
-            EXPECT_LT(loaded.Fastest(dt), ratio < 2000 ? 1e-3 : 0.02) << ratio << " at " << dt;
-            EXPECT_LT(loaded.Drift(), ratio < 2000 ? 1e-3 : 3e-3) << ratio << " at " << dt;
+            const std::string what =
+                std::to_string(ratio) + " at " + std::to_string(dt) + " of " + std::to_string(substeps);
+            EXPECT_LT(loaded.world.Report().largestPenetration, 0.005f) << what;
+            EXPECT_LT(loaded.Fastest(dt), ratio < 2000 ? 3e-4 : 0.01) << what;
+            EXPECT_LT(loaded.Drift(), ratio < 2000 ? 1e-3 : 3e-3) << what;
         }
 }
 
-// Legs of 8 kg under a top of 100 kg and what stands on one of them: the others are hardly pressed.
-TEST(Structures, TablesWithALoadAtACornerStandStill) {
-    for (const float load : {1.0f, 100.0f, 300.0f, 1000.0f})
-        for (const int substeps : {4, 16}) {
+// Legs of 8 kg under a top of 100 kg and what stands on one of them: the others are hardly pressed. With springs as
+// stiff as 16 and more substeps allow, and with more relax iterations, they rattled and walked.
+TEST(Structures, TablesWithALoadAtACornerStandStillAtEveryEffort) {
+    for (const float load : {1.0f, 100.0f, 300.0f, 1000.0f, 3000.0f})
+        for (const int substeps : {4, 16, 64, 128}) {
             SystemSettings settings = NoSleep();
             settings.solver.substeps = substeps;
             Structure table(settings);
@@ -143,8 +156,8 @@ TEST(Structures, TablesWithALoadAtACornerStandStill) {
             table.Add({.shape = BoxOf(0.9f, 0.03f, 0.6f), .position = {0, 0.83, 0}, .mass = 100});
             table.Add({.shape = CubeOf(0.05f), .position = {0.75, 0.91, 0.45}, .mass = load});
             table.world.Run(5);
-            EXPECT_LT(table.Fastest(), 1e-4) << load << " at " << substeps;
-            EXPECT_LT(table.Drift(), 0.005) << load << " at " << substeps;
+            EXPECT_LT(table.Fastest(), load < 2000 ? 1e-4 : 5e-4) << load << " at " << substeps;
+            EXPECT_LT(table.Drift(), 0.001) << load << " at " << substeps;
         }
 }
 

@@ -57,7 +57,7 @@ void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcom
     }
     if (values.Chance(0.1f)) settings.narrowPhase = values.One<NarrowPhaseMethod>(2);
     mostly(settings.accuracy.penetration, 0.001f, 0.1f);
-    if (values.Chance(0.1f)) settings.accuracy.mostSubsteps = values.Integer(1, 64);
+    if (values.Chance(0.1f)) settings.accuracy.mostSubsteps = values.Integer(1, 255);
     if (values.Chance(0.1f)) settings.accuracy.jointError = values.Setting(0.0005f, 0.1f);
     if (values.Chance(0.1f)) settings.accuracy.largeIslands = values.Chance(0.5f);
     settings.measuresErrors = settings.sleep.enabled;

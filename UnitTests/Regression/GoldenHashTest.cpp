@@ -12,9 +12,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xe9251ad7dfb617d7ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x394c63dbab82e046ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xd62ec815b8186a65ull;
+constexpr uint64_t kGoldenHash = 0x9664573931947f88ull;
+constexpr uint64_t kGoldenHashOfJoints = 0xe9dc93fd357e7832ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x4d04d17a6d6e5b9dull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x4899eb60e4ffbab0ull;
 
 std::string Hex(uint64_t number) {

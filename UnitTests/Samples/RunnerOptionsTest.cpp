@@ -184,7 +184,7 @@ TEST(RunnerOptions, ErrorsOfValuesOutOfRangeSuggestTheNearest) {
     ExpectComplaint("run pyramid --steps 0", "--steps 0 is outside 1 to 10000000; the nearest valid value is 1");
     ExpectComplaint("run pyramid --steps -4", "nearest valid value is 1");
     ExpectComplaint("run pyramid --steps 99999999999999999999", "nearest valid value is 10000000");
-    ExpectComplaint("run pyramid --substeps 65", "nearest valid value is 64");
+    ExpectComplaint("run pyramid --substeps 256", "nearest valid value is 255");
     ExpectComplaint("run pyramid --velocity-iterations 0", "nearest valid value is 1");
     ExpectComplaint("run pyramid --position-iterations 256", "nearest valid value is 255");
     ExpectComplaint("run pyramid --position-correction baumgart", "baumgarte");
