@@ -13,7 +13,6 @@ namespace fulcrum {
 namespace {
 
 constexpr const char* kWorldName = "world";
-constexpr std::array kMotionNames = {"Static", "Kinematic", "Dynamic"};
 
 // ---- Reading
 
@@ -144,12 +143,11 @@ private:
         const Json* parts = fields.Find("parts");
         if (document_.error) return;
         const Result<RagdollSettings> settings =
-            parts ? RagdollFromJson(Json{{"parts", *parts}}) : ReadRagdollFile((document_.folder / file).string());
+            parts ? RagdollFromJson(Json{{"parts", *parts}}) : fulcrum::ReadRagdoll((document_.folder / file).string());
         if (settings) ragdoll.settings = settings.Value();
         else document_.error = Error{settings.GetError().code, fields.Where() + ": " + settings.GetError().message};
         scene_.ragdolls.push_back(std::move(ragdoll));
     }
-    static Result<RagdollSettings> ReadRagdollFile(const std::string& file) { return fulcrum::ReadRagdoll(file); }
 
     JsonDocument document_;
     JsonReader root_;

@@ -123,7 +123,7 @@ std::string SceneSchema() {
                             {"file", name},
                             {"parts", {{"type", "array"}, {"items", Ref("part")}}},
                             {"origin", pose},
-                            {"motion", Names(std::array{"Static", "Kinematic", "Dynamic"})}}},
+                            {"motion", Names(kMotionNames)}}},
                           {"additionalProperties", false}};
     const auto list = [](const char* of) { return Json{{"type", "array"}, {"items", Ref(of)}}; };
     const Json schema = {

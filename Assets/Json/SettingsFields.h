@@ -26,6 +26,7 @@ inline constexpr std::array kJointKindNames<AnyJointSettings> = {
     "SixDof", "Gear",  "RackAndPinion", "Pulley", "Path",   "Wheel"};
 static_assert(kJointKindNames<RagdollJoint>.size() == std::variant_size_v<RagdollJoint>);
 static_assert(kJointKindNames<AnyJointSettings>.size() == std::variant_size_v<AnyJointSettings>);
+inline constexpr std::array kMotionNames = {"Static", "Kinematic", "Dynamic"};
 inline constexpr std::array kCombineRuleNames = {"GeometricMean", "Average", "Minimum", "Multiply", "Maximum"};
 
 template <class Archive>
@@ -195,7 +196,7 @@ void Describe(Archive& archive, Material& s) {
 template <class Archive>
 void Describe(Archive& archive, BodySettings& s) {
     archive.Field("shape", s.shape);
-    archive.Choice("motion", s.motion, std::array{"Static", "Kinematic", "Dynamic"});
+    archive.Choice("motion", s.motion, kMotionNames);
     archive.Field("position", s.position);
     archive.Field("rotation", s.rotation);
     archive.Field("linearVelocity", s.linearVelocity);

@@ -43,11 +43,14 @@ Result<ExportedScene> ExportScene(const Scene& scene, const SceneInput& input) {
         numbers[id] = static_cast<int>(description.bodies.size());
         description.bodies.push_back({{}, settings});
     }
-    const auto numberOf = [&](BodyId id) { return id == kWorldBody ? SceneJoint::kWorld : numbers.at(id); };
+    numbers[kWorldBody] = SceneJoint::kWorld;
     for (const auto& [id, settings] : world.joined) {
         const JointSettings& common =
             std::visit([](const JointSettings& s) -> const JointSettings& { return s; }, settings);
-        description.joints.push_back({{}, numberOf(common.bodyA), numberOf(common.bodyB), settings});
+        const auto a = numbers.find(common.bodyA), b = numbers.find(common.bodyB);
+        if (a == numbers.end() || b == numbers.end())
+            return Error{ErrorCode::Unsupported, "a joint holds a part of a ragdoll, which has no number in a file"};
+        description.joints.push_back({{}, a->second, b->second, settings});
     }
     description.ragdolls = world.addedRagdolls;
     size_t joints = 0;
