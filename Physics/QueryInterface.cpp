@@ -246,15 +246,21 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
     if (!IsUsable(pose) || !(maxDistance >= 0)) return false;
     const ColliderSearch search(world_, filter);
     const Bounds bounds = BoundsAbout(OriginOf(world_), *shape.shape, pose);
-    float limit = maxDistance;
+    // Bodies are also tested a little beyond the best distance, by what distances are off due to rounding: the answer
+    // does not depend on the order in which the tree finds them.
+    const float rounding = RoundingOfDistances(shape.shape->OuterRadius());
+    float limit = maxDistance, reach = limit + rounding;
     uint32_t bestCollider = ~0u;
     ClosestPoints best;
-    search.Run([&](const BoundsTree& tree, const auto& found) { tree.VisitNear(bounds, limit, found); },
+    search.Run([&](const BoundsTree& tree, const auto& found) { tree.VisitNear(bounds, reach, found); },
                [&](uint32_t collider) {
                    ClosestPoints found;
                    const Pose at = search.PoseOf(collider);
-                   if (!FindClosestPoints(search.ShapeOf(collider), *shape.shape, Relative(at, pose), limit, found,
-                                          world_.settings.narrowPhase))
+                   const Shape& candidate = search.ShapeOf(collider);
+                   const float reachOfPair = reach + RoundingOfDistances(candidate.OuterRadius());
+                   if (!FindClosestPoints(candidate, *shape.shape, Relative(at, pose), reachOfPair, found,
+                                          world_.settings.narrowPhase) ||
+                       found.distance > maxDistance)
                        return;
                    const bool isCloser =
                        bestCollider == ~0u || found.distance < best.distance ||
@@ -263,6 +269,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
                    best = found;
                    bestCollider = collider;
                    limit = std::max(best.distance, 0.0f);  // overlapping bodies are all tested, for the deepest
+                   reach = limit + rounding;
                });
     if (bestCollider == ~0u) return false;
     const Pose at = search.PoseOf(bestCollider);

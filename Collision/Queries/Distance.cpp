@@ -38,7 +38,9 @@ public:
         : limit_(maxDistance), result_(result), method_(method) {}
 
     void Consider(const Piece& a, const Piece& b, const RelativePose& bInA) {
-        const ConvexSeparation found = MeasureConvex(a.shape, b.shape, bInA, std::max(limit_, 0.0f), method_);
+        const float size = std::max(a.shape.OuterRadius(), b.shape.OuterRadius());
+        const float reach = std::max(limit_, 0.0f) + RoundingOfDistances(size);
+        const ConvexSeparation found = MeasureConvex(a.shape, b.shape, bInA, reach, method_);
         if (found.isBeyond) return;
         Consider(found.separation, Rotate(a.pose.rotation, found.normal), a.pose.Transform(found.onA),
                  a.pose.Transform(found.onB), a.subShape, b.subShape);

@@ -105,6 +105,41 @@ TEST(QueriesAtExtremes, AllHitsAreListedUpToTheFractionThatIsAskedFor) {
     }
 }
 
+// The closest of a few bodies to a spike so long that its place is off by meters due to rounding: a matter of the
+// numbers, not of the order in which the bodies were added, thus not of the tree's.
+TEST(QueriesAtExtremes, TheClosestBodyDoesNotDependOnTheTree) {
+    constexpr int kBodies = 12;
+    for (const float size : {1.0f, 1e6f, 1e7f, 1e8f, 1e9f}) {
+        for (uint32_t seed = 0; seed < 1000; ++seed) {
+            RandomPoses random(seed);
+            BodySettings bodies[kBodies];
+            for (BodySettings& body : bodies) {
+                const float radius = random.Between(0.1f, 0.5f);
+                body.shape = random.Between(0, 1) < 0.5f ? BoxOf(radius, 0.5f * radius, radius) : SphereOf(radius);
+                body.motion = MotionType::Static;
+                body.position = random.InBox(2).cast<double>();
+                body.rotation = random.Rotation();
+            }
+            const float heights[] = {0, random.Between(0, 1), random.Between(0, 1), size};
+            const auto spiked = HeightField::Create({.sampleCountX = 2, .sampleCountZ = 2, .heights = heights}).Value();
+            const PlacedShape query{spiked.get(), {random.InBox(1).cast<double>(), random.Rotation()}};
+            int closest[2] = {-1, -1};
+            float distances[2] = {};
+            for (const bool backwards : {false, true}) {
+                TestWorld world;
+                for (int i = 0; i < kBodies; ++i) world.Add(bodies[backwards ? kBodies - 1 - i : i]);
+                WorldClosest found;
+                if (!world.System().Queries().FindClosest(query, 5, found)) continue;
+                const int index = static_cast<int>(found.body.index);
+                closest[backwards] = backwards ? kBodies - 1 - index : index;
+                distances[backwards] = found.distance;
+            }
+            EXPECT_EQ(closest[0], closest[1]) << size << ", seed " << seed;
+            EXPECT_EQ(distances[0], distances[1]) << size << ", seed " << seed;
+        }
+    }
+}
+
 // If the rounding of coordinates exceeds the thickness of the shapes, libccd's MPR refined its portal forever: one pair
 // of four here.
 TEST(QueriesAtExtremes, ClosestPointsOfFieldsWithAnEndlessSpikeAreFound) {
