@@ -249,7 +249,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
     // Bodies are also tested a little beyond the best distance, by what distances are off due to rounding: the answer
     // does not depend on the order in which the tree finds them.
     const float rounding = RoundingOfDistances(shape.shape->OuterRadius());
-    float limit = maxDistance, reach = limit + rounding;
+    float reach = maxDistance + rounding;
     uint32_t bestCollider = ~0u;
     ClosestPoints best;
     search.Run([&](const BoundsTree& tree, const auto& found) { tree.VisitNear(bounds, reach, found); },
@@ -268,8 +268,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
                    if (!isCloser) return;
                    best = found;
                    bestCollider = collider;
-                   limit = std::max(best.distance, 0.0f);  // overlapping bodies are all tested, for the deepest
-                   reach = limit + rounding;
+                   reach = std::max(best.distance, 0.0f) + rounding;  // overlapping ones are all tested for the deepest
                });
     if (bestCollider == ~0u) return false;
     const Pose at = search.PoseOf(bestCollider);

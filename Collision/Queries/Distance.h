@@ -18,8 +18,8 @@ struct ClosestPoints {
 };
 
 // What a measured distance may be off due to rounding (m), as may the distance at which a search proves that shapes are
-// farther apart than its reach: `size` in m, of the larger shape. Searches that compare distances go this far beyond the
-// best one, or what they find would depend on their order.
+// farther apart than its reach: `size` in m, of the larger shape. Searches that compare distances go this far beyond
+// the best one, or what they find would depend on their order.
 inline float RoundingOfDistances(float size) { return 1e-6f * size; }
 
 // Finds the closest points, `bInA` being the pose of b's center frame in a's. Returns false if the distance exceeds
