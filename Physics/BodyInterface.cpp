@@ -120,9 +120,7 @@ void VisitRecords(PairStore& pairs, uint32_t pair, Visit&& visit) {
 // N s, along the normals.
 float ImpulseOf(PairStore& pairs, uint32_t pair) {
     float sum = 0;
-    VisitRecords(pairs, pair, [&](const ContactRecord& record) {
-        for (const float impulse : record.impulse) sum += impulse;
-    });
+    VisitRecords(pairs, pair, [&](const ContactRecord& record) { sum += record.TotalImpulse(); });
     return sum;
 }
 

@@ -52,6 +52,13 @@ struct alignas(32) ContactRecord {
         kSurfaceB = 7
     };
 
+    // N s along the normal, of the points in use: impulses beyond them are those of earlier steps.
+    float TotalImpulse() const {
+        float total = 0;
+        for (int i = 0; i < static_cast<int>(pointCount); ++i) total += impulse[i];
+        return total;
+    }
+
     // Features that few contacts have, as bits.
     enum Mark { kSurfaceVelocity = 1, kMassOverride = 2, kSensed = 4 };
     // kSensed: the contact is an event, but not solved

@@ -133,8 +133,7 @@ void NoteForces(const StepContext& step, const ConstraintColoring& coloring, con
     if (!AdaptsToLoads(step.settings, bodies)) return;
     using Kind = ConstraintColoring::Kind;
     const auto note = [&](uint32_t, const ConstraintColoring::Entry& entry) {
-        float impulse = 0;
-        for (const float i : pairs.records[entry.constraint].impulse) impulse += i;
+        const float impulse = pairs.records[entry.constraint].TotalImpulse();
         const Pair& pair = pairs.pairs[entry.constraint];
         const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
         const BodyDynamics& lighter = b.inverseMass > a.inverseMass ? b : a;

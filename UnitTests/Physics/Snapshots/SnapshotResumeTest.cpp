@@ -66,6 +66,20 @@ TEST(SnapshotResume, OfTheMixedScene) {
     }
 }
 
+// Longer steps look at the impulses of shorter ones.
+TEST(SnapshotResume, OfStepsOfOtherLengths) {
+    for (uint32_t threads : {1u, 4u}) {
+        TestWorld world({}, threads);
+        MixedScene scene(world);
+        double dt = 0;
+        const auto beforeStep = [&](int step) {
+            scene.BeforeStep(step);
+            dt = step % 7 < 4 ? 1.0 / 240 : 1.0 / 30;
+        };
+        ExpectRepeats({world.System(), beforeStep, [&] { ASSERT_TRUE(world.System().Update(dt)); }}, 400, 20, 40);
+    }
+}
+
 TEST(SnapshotResume, OfTheJointScene) {
     for (uint32_t threads : {1u, 2u, 4u}) {
         TestWorld world(JointScene::Settings(), threads);
