@@ -15,10 +15,6 @@ inline float FarPush(const JointSolveSettings& settings) {
     constexpr float kFarFraction = 0.5f, kFarDistance = 0.05f;  // m
     return std::fmin(kFarFraction, kFarDistance * settings.inverseDt / settings.maxPushSpeed);
 }
-// Locks that are not far apart are pushed no faster than this fraction of the largest push speed: three ragdolls that
-// lay across each other, with gaps of 8 and 10 cm, were thrown apart at 450 m/s by pushes of 10 m/s, which one relax
-// iteration does not remove.
-inline constexpr float kNearPush = 0.35f;
 inline constexpr float kNearFraction = 0.02f, kFollowFraction = 0.2f;
 
 // JointRecord::wasPulled. Joints that are far apart add the seconds for which they have not been distant.

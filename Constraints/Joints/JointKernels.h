@@ -454,7 +454,7 @@ FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>
     const RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
     const auto push = [&](const auto& error) {
         auto bias = error;
-        const Real rate(settings.pushes ? settings.pushRate : 0.0f), most(kNearPush * settings.maxPushSpeed);
+        const Real rate(settings.pushes ? settings.pushRate : 0.0f), most(settings.maxPushSpeed);
         for (int k = 0; k < bias.size(); ++k) bias[k] = Clamp<Real>(error[k] * rate, -most, most);
         return bias;
     };

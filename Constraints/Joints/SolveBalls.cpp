@@ -110,7 +110,7 @@ template <int N>
 FULCRUM_FORCE_INLINE void SetPush(BallBatch<N>& batch, const Vec3<Wide<N>>& offset,
                                   const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real rate(settings.pushes ? settings.pushRate : 0.0f), most(kNearPush * settings.maxPushSpeed);
+    const Real rate(settings.pushes ? settings.pushRate : 0.0f), most(settings.maxPushSpeed);
     for (int k = 0; k < 3; ++k) batch.push[k] = Clamp<Real>(offset[k] * rate, -most, most);
     if (!batch.far) return;
     const auto isFar = batch.isFar > Real(0.5f);

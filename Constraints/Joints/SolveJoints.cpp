@@ -123,9 +123,11 @@ FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twi
     apply(linearPart, x.linear);
 }
 
+// Locks come before rows: a row's response includes the reaction of the locks, which thus stay satisfied. A row before
+// them would react to motion that the locks have yet to stop: of a rod that is held at one end its impulse would be up
+// to four times too large, and iterations of limits between contacts would diverge.
 template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kLinear, kAngular>(batch, batch.rows[i], a, b);
     if constexpr (!kCoupled<kLinear, kAngular>) {
         if constexpr (kAngular != AngularLock::None)
             AngularPart<kAngular>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
@@ -134,22 +136,7 @@ FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twis
     } else {
         SolveBoth<kRelax, kLinear, kAngular>(batch, a, b);
     }
-}
-
-// Locks of joints that are far apart are solved before their rows: with lever arms as long as the gap, a row would
-// otherwise react to motion that the locks have yet to stop, and add energy.
-template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] void HoldFar(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    using Real = Wide<N>;
-    if constexpr (kLinear == LinearLock::None && kAngular == AngularLock::None) return;
-    const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);
-    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, motion.linear, motion.angular);
-    const auto apply = [&](auto& part, const Vec3<Real>& impulse) {
-        part.AddLambda(a, b, batch.massA, batch.massB, -Narrowed(impulse, part.GetTotalLambda()),
-                       batch.isFar > Real(0.5f));
-    };
-    if constexpr (kAngular != AngularLock::None) apply(AngularPart<kAngular>(batch), x.angular);
-    if constexpr (kLinear != LinearLock::None) apply(LinearPart<kLinear>(batch), x.linear);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kLinear, kAngular>(batch, batch.rows[i], a, b);
 }
 
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -257,7 +244,6 @@ template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
         if (settings.continues) Turn<linear, angular>(batch, a, b);
-        if (batch.far) HoldFar<linear, angular>(batch, a, b);
         SolveAll<false, linear, angular>(batch, a, b);
     });
 }
@@ -269,7 +255,6 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         if (isPushed.Any()) [[unlikely]]
             TurnAtOnce<linear>(batch, isPushed, a, b);
-        if (batch.far) HoldFar<linear, angular>(batch, a, b);
         SetRowRelax(batch);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);

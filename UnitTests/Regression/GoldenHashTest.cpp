@@ -13,7 +13,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x9664573931947f88ull;
-constexpr uint64_t kGoldenHashOfJoints = 0xe9dc93fd357e7832ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x8e0c4952a2d32634ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x4d04d17a6d6e5b9dull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x4899eb60e4ffbab0ull;
 
