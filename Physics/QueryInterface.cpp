@@ -131,7 +131,7 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
     if (!scope || !IsGiven(shape.shape)) return;
     const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
     const ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
-    if (!caster.IsValid()) return;
+    if (!caster.IsValid() || !settings.IsValid()) return;
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
     AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction,
@@ -151,7 +151,7 @@ bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, con
     if (!scope || !IsGiven(shape.shape)) return false;
     const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
     const ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
-    if (!caster.IsValid()) return false;
+    if (!caster.IsValid() || !settings.IsValid()) return false;
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
     bool any = false;

@@ -24,6 +24,10 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
 
 }  // namespace
 
+bool ShapeCastSettings::IsValid() const {
+    return maxFraction >= 0 && separation >= 0 && tolerance >= 0 && IsWithinReach(Position(separation, tolerance, 0));
+}
+
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion, NarrowPhaseMethod method)
     : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)), method_(method) {
     isValid_ = IsFinite(motion.pose.position) && IsRotation(motion.pose.rotation) &&
@@ -169,9 +173,7 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
 
 void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context,
                          HitFunction found) const {
-    const bool isValid =
-        isValid_ && settings.maxFraction >= 0 && IsWithinReach(Position(settings.separation, settings.tolerance, 0));
-    if (!isValid || !IsWithinReach(motion_.pose.position - pose.position)) return;
+    if (!isValid_ || !settings.IsValid() || !IsWithinReach(motion_.pose.position - pose.position)) return;
     ShapeHit hit;
     if (other.IsConvex()) {
         const Piece piece{static_cast<const ConvexShape&>(other), {}, {}};

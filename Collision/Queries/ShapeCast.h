@@ -1,7 +1,6 @@
 // Casts a convex shape that moves along a line and may rotate at a constant rate against a single shape at a pose.
-// Called
-// by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe; allocates
-// nothing unless the depth of a degenerate overlap is measured, or with the method Libccd.
+// Called by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe;
+// allocates nothing unless the depth of a degenerate overlap is measured, or with the method Libccd.
 //
 // No hit is missed, however thin or fast the shapes. Shapes that overlap at the start are hit at fraction 0, with
 // penetration depth and normal. One-sided triangles are only hit from the front: a shape that moves along their normal,
@@ -29,6 +28,7 @@ struct ShapeMotion {
     Vector3 turnOfOther = Vector3::Zero();
 };
 
+// Settings out of range hit nothing.
 struct ShapeCastSettings {
     bool backFaces = false;  // triangles are hit from behind
     float maxFraction = 1;   // 0 .. 1, of the motion; only hits up to here
@@ -38,6 +38,8 @@ struct ShapeCastSettings {
     // for a character that stands on a floor and walks. A motion of zero length then hits nothing at the start.
     bool ignoreSeparating = false;
     bool measureDepth = true;  // otherwise overlaps at the start have depth, normal and position zero
+
+    bool IsValid() const;
 };
 
 struct ShapeHit {

@@ -140,6 +140,28 @@ TEST(QueriesAtExtremes, TheClosestBodyDoesNotDependOnTheTree) {
     }
 }
 
+// A negative tolerance shrank the box with which the tree was searched: which bodies were hit depended on the tree.
+TEST(QueriesAtExtremes, CastsWithSettingsOutOfRangeHitNothing) {
+    TestWorld world;
+    world.Add({.shape = CubeOf(0.5f), .motion = MotionType::Static});
+    const ShapePtr ball = SphereOf(0.2f);
+    const QueryInterface& queries = world.System().Queries();
+    const MovingShape moving{static_cast<const ConvexShape*>(ball.get()), {Position(0, 3, 0), {}}, Vector3(0, -4, 0)};
+    WorldShapeHit hit;
+    std::vector<WorldShapeHit> all;
+    EXPECT_TRUE(queries.CastShape(moving, hit));
+    for (const float odd : {-1e-6f, -0.1f, -3e4f, -kInfinity, kInfinity, kNaN}) {
+        for (float ShapeCastSettings::*which : {&ShapeCastSettings::separation, &ShapeCastSettings::tolerance}) {
+            ShapeCastSettings settings;
+            settings.*which = odd;
+            EXPECT_FALSE(queries.CastShape(moving, hit, settings)) << odd;
+            EXPECT_FALSE(queries.IsHit(moving, settings)) << odd;
+            queries.CastShapeAll(moving, all, settings);
+            EXPECT_TRUE(all.empty()) << odd;
+        }
+    }
+}
+
 // If the rounding of coordinates exceeds the thickness of the shapes, libccd's MPR refined its portal forever: one pair
 // of four here.
 TEST(QueriesAtExtremes, ClosestPointsOfFieldsWithAnEndlessSpikeAreFound) {
