@@ -73,21 +73,29 @@ bool IsSqueezed(const Twin& twin) {
     return false;
 }
 
-// Whether a kinematic body may push one that is guided by locked axes. An inclined face that moves at v drives what it
-// touches along a guide at v over the sine of the angle between them, a wedge: that has no bound by speeds either.
+// Whether a kinematic body may push one that is guided by locked axes, or by something else that is immovable: a floor
+// under it. An inclined face that moves at v drives what it touches along a guide at v over the sine of the angle
+// between them, a wedge: that has no bound by speeds either.
 bool IsWedged(const Twin& twin) {
     const BodyInterface& bodies = twin.system->Bodies();
     const auto isGuided = [&](BodyId id) {
         return std::find(twin.guided.begin(), twin.guided.end(), id) != twin.guided.end();
     };
+    std::vector<std::pair<BodyId, BodyId>> held;  // bodies that touch an immovable one, and which
     bool found = false;
     twin.system->VisitContacts([&](const ContactView& contact) {
-        const bool isA = isGuided(contact.bodyA), isB = isGuided(contact.bodyB);
-        if (isA == isB) return;
-        const BodyId other = isA ? contact.bodyB : contact.bodyA;
+        const bool isA = bodies.GetMotionType(contact.bodyA) == MotionType::Dynamic,
+                   isB = bodies.GetMotionType(contact.bodyB) == MotionType::Dynamic;
+        if (isA != isB) held.emplace_back(isA ? contact.bodyA : contact.bodyB, isA ? contact.bodyB : contact.bodyA);
+        const bool isGuidedA = isGuided(contact.bodyA), isGuidedB = isGuided(contact.bodyB);
+        if (isGuidedA == isGuidedB) return;
+        const BodyId other = isGuidedA ? contact.bodyB : contact.bodyA;
         const bool isDriven = bodies.GetMotionType(other) == MotionType::Kinematic;
         found |= isDriven || twin.scalesMasses;
     });
+    for (const auto& [body, driver] : held)
+        for (const auto& [same, other] : held)
+            found |= body == same && driver != other && bodies.GetMotionType(driver) == MotionType::Kinematic;
     return found;
 }
 
@@ -180,6 +188,7 @@ private:
     std::string PlayCall(const RandomCall& call) {
         const double before = Seconds(), energy = KineticEnergy(twins_[0]),
                      allowance = IsStep(call) ? EnergyAllowance(twins_[0]) : 0;
+        wasWedged_ = IsStep(call) && IsWedged(twins_[0]);
         posesBefore_ = twins_[0].system->HashPoses();
         const Outcome first = PlayIn(twins_[0], call);
         const double took = Seconds() - before;
@@ -222,7 +231,8 @@ private:
         const bool isPushed = isPushed_;
         isPushed_ = false;
         const double after = KineticEnergy(twins_[0]);
-        if (isPushed || after <= 2 * before + allowance || IsSqueezed(twins_[0]) || IsWedged(twins_[0])) return {};
+        if (isPushed || after <= 2 * before + allowance || IsSqueezed(twins_[0]) || wasWedged_ || IsWedged(twins_[0]))
+            return {};
         std::ostringstream text;
         text << "kinetic energy rose from " << before << " to " << after << " J in a step, which may add " << allowance;
         return text.str();
@@ -236,6 +246,7 @@ private:
     uint64_t state_ = 0;
     uint64_t posesBefore_ = 0;
     bool isPushed_ = false;
+    bool wasWedged_ = false;  // before the step
 };
 
 }  // namespace
