@@ -5,11 +5,11 @@ namespace fulcrum {
 namespace {
 
 // Extends bounds about the center of a shape by the motion of points inside due to a rotation vector, rad: |turn x p|
-// along each axis for points p within the extended bounds; never beyond the bounding sphere. For rotations too slow to
-// matter the bounds are unchanged.
+// along each axis for points p within the extended bounds; never beyond the bounding sphere. For rotations that move
+// no point by half the inner radius the bounds are unchanged.
 void ExtendByTurn(const Shape& shape, const Vector3& turn, Vector3& lower, Vector3& upper) {
     const float outer = shape.OuterRadius(), angle = Length(turn);
-    if (!(angle * outer > shape.InnerRadius())) return;
+    if (!(angle * outer > 0.5f * shape.InnerRadius())) return;
     const Vector3 sphere = Vector3::Constant(outer), rate = turn.cwiseAbs();
     const Vector3 far = Vector3(lower.cwiseAbs().cwiseMax(upper.cwiseAbs()) + sphere * angle).cwiseMin(sphere);
     const Vector3 swept(rate.y() * far.z() + rate.z() * far.y(), rate.z() * far.x() + rate.x() * far.z(),

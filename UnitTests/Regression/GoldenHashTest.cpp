@@ -12,9 +12,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x9664573931947f88ull;
+constexpr uint64_t kGoldenHash = 0x1d2de12d76d48a0eull;
 constexpr uint64_t kGoldenHashOfJoints = 0x8e0c4952a2d32634ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x4d04d17a6d6e5b9dull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x22c635c460d011fcull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x4899eb60e4ffbab0ull;
 
 std::string Hex(uint64_t number) {

@@ -233,5 +233,21 @@ TEST(PassThrough, ALightBallUnderAHeavyOneIsNotPressedIntoTheFloor) {
     }
 }
 
+// A rod without velocity rotates by 9 degrees in a step, which moves its end towards a wall by 0.23 m: less than its
+// inner radius. Its bounds did not contain that motion, and the end was 8 cm inside the wall after the step.
+TEST(PassThrough, AnEndThatRotatesIntoAWallIsForeseen) {
+    for (const ContinuousCollision continuous : {ContinuousCollision::Off, ContinuousCollision::Linear}) {
+        TestWorld world(NoGravity());
+        world.Add({.shape = BoxOf(1, 5, 5), .motion = MotionType::Static, .position = {1.4, 0, 0}});
+        const BodyId rod = world.Add(
+            {.shape = BoxOf(0.25f, 1.5f, 0.25f), .angularVelocity = {0, 0, 0.16f * 480}, .continuous = continuous});
+        world.Step(1.0 / 480);
+        const Pose pose = world.Bodies().GetPose(rod);
+        const Matrix3 axes = ToMatrix(pose.rotation);
+        const double extent = double{0.25f * std::fabs(axes.x.x()) + 1.5f * std::fabs(axes.y.x())};
+        EXPECT_LT(pose.position.x() + extent, 0.4 + 0.01) << static_cast<int>(continuous);
+    }
+}
+
 }  // namespace
 }  // namespace fulcrum::testing
