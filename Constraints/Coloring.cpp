@@ -25,6 +25,8 @@ ColorSlot ConstraintColoring::Add(Kind kind, const Entry& entry, bool late) {
     }
     std::vector<Entry>& list = List(place.color, kind);
     place.slot = static_cast<uint32_t>(list.size());
+    // Grows by an eighth: doubling would leave up to half unused.
+    if (list.size() == list.capacity()) list.reserve(list.size() + list.size() / 8 + 16);
     list.push_back(entry);
     ++size_;
     ++version_;

@@ -115,7 +115,7 @@ uint32_t ColliderCountOf(const Shape& shape) {
 template <class Visit>
 void VisitRecords(PairStore& pairs, uint32_t pair, Visit&& visit) {
     for (; pair != PairStore::kNone; pair = pairs.pairs[pair].more)
-        if (pairs.pairs[pair].touching) visit(pairs.records[pair]);
+        if (pairs.pairs[pair].touching) visit(pairs.RecordOf(pairs.pairs[pair]));
 }
 // N s, along the normals.
 float ImpulseOf(PairStore& pairs, uint32_t pair) {

@@ -11,9 +11,10 @@ uint64_t SnapshotFormat() {
         for (const uint64_t part :
              {uint64_t{1}, uint64_t{FULCRUM_VERSION}, uint64_t{std::endian::native == std::endian::little},
               uint64_t{sizeof(SystemSettings)}, uint64_t{sizeof(BodyDynamics)}, uint64_t{sizeof(BodyCold)},
-              uint64_t{sizeof(Collider)}, uint64_t{sizeof(Pair)}, uint64_t{sizeof(ContactRecord)},
-              uint64_t{sizeof(Joint)}, uint64_t{sizeof(JointRecord)}, uint64_t{sizeof(JointType)},
-              uint64_t{sizeof(AxisControl)}, uint64_t{sizeof(Sensor)}, uint64_t{sizeof(DispersingBody)}})
+              uint64_t{sizeof(Collider)}, uint64_t{sizeof(Pair)}, uint64_t{sizeof(PairContact)},
+              uint64_t{sizeof(ContactRecord)}, uint64_t{sizeof(Joint)}, uint64_t{sizeof(JointRecord)},
+              uint64_t{sizeof(JointType)}, uint64_t{sizeof(AxisControl)}, uint64_t{sizeof(Sensor)},
+              uint64_t{sizeof(DispersingBody)}})
             hash = HashWord(hash, part);
         return hash;
     }();

@@ -38,10 +38,12 @@ void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
         pairs.table_.assign(places, {});
     }
     pairs.pairs.resize(count);
-    pairs.records.resize(count);
     pairs.loads.resize(count);
     pairs.links_.resize(count);
-    pairs.massOverrides.resize(pairs.keepsMassOverrides_ ? count : 0);
+    pairs.contacts.clear();
+    pairs.records.clear();
+    pairs.massOverrides.clear();
+    pairs.freeContacts_.clear();
     pairs.reported.resize(pairs.keepsReported_ ? count : 0);
     pairs.active.words_.assign((count + 63) / 64, 0);
     pairs.active.size_ = 0;
@@ -167,7 +169,8 @@ void SnapshotAccess::AttachPair(const ColliderStore& colliders, PairStore& store
     pair.bodyB = colliders.colliders[pair.colliderB].body;
     pair.shapeA = static_cast<const ConvexShape*>(colliders.shapes[pair.colliderA].shape);
     pair.shapeB = colliders.shapes[pair.colliderB].shape;
-    ListColor(coloring, KindOf(pair), EntryOf(pair, index), pair.color);
+    if (pair.contact != PairStore::kNone)
+        ListColor(coloring, KindOf(pair), EntryOf(pair), store.contacts[pair.contact].color);
 }
 
 }  // namespace fulcrum

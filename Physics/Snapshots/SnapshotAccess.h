@@ -129,27 +129,35 @@ void SnapshotAccess::VisitColliders(Stream& s, Colliders& store) {
 
 template <class Stream, class Pairs, class Attach>
 void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
-    auto& [pairs, records, massOverrides, reported, ended, loads, loadVersion, active, table, free, links, heads, size,
-           keepsMassOverrides, keepsReported] = store;
+    auto& [pairs, contacts, records, massOverrides, reported, ended, loads, loadVersion, active, table, free,
+           freeContacts, links, heads, size, keepsMassOverrides, keepsReported] = store;
     s.Begin(SnapshotSection::Pairs);
     const auto count = static_cast<uint32_t>(pairs.size());
     for (uint32_t i = 0; i < count; ++i) {
         constexpr uint32_t kAhead = 12;  // prefetch distance
         if (i + kAhead < count) {
             __builtin_prefetch(&pairs[i + kAhead]);
-            __builtin_prefetch(&pairs[i + kAhead].cache);
-            __builtin_prefetch(&records[i + kAhead]);
+            if (pairs[i].contact != PairStore::kNone) {
+                __builtin_prefetch(&contacts[pairs[i].contact] + kAhead);
+                __builtin_prefetch(&records[pairs[i].contact] + kAhead);
+            }
         }
         s.Reserve(kMostOfPair);
         const uint64_t before = Stream::kWrites ? kNoKey : KeyOf(store, i);
-        bool isActive = active.Contains(i);
-        if (VisitPair(s, pairs[i], isActive)) {
+        bool isActive = active.Contains(i), hasContact = pairs[i].contact != PairStore::kNone;
+        if (VisitPair(s, pairs[i], isActive, hasContact)) {
             auto& [next, previous] = links[i];
             if (!pairs[i].isMore) s(next, previous);
             VisitLoad(s, loads[i]);
-            VisitRecord(s, records[i], pairs[i].pointCount);
-            if (keepsMassOverrides && records[i].Has(ContactRecord::kMassOverride))
-                VisitMassOverride(s, massOverrides[i]);
+            if constexpr (!Stream::kWrites)
+                if (hasContact) store.AddContact(i);
+            if (hasContact) {
+                const uint32_t contact = pairs[i].contact;
+                VisitContact(s, contacts[contact], pairs[i].pointCount);
+                VisitRecord(s, records[contact], pairs[i].pointCount);
+                if (keepsMassOverrides && records[contact].Has(ContactRecord::kMassOverride))
+                    VisitMassOverride(s, massOverrides[contact]);
+            }
             if (keepsReported) VisitReported(s, reported[i]);
             if constexpr (!Stream::kWrites)
                 if (isActive) active.Insert(i);

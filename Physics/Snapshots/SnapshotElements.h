@@ -231,12 +231,12 @@ void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
 
 inline constexpr size_t kMostOfPair = 512;
 
-// Except shapes and bodies, which are derived from the colliders, and data that are meaningless without contact points
-// if there are none. Returns false if there is no pair.
+// Except shapes and bodies, which are derived from the colliders, and the contact; hasContact: whether there is one.
+// Returns false if there is no pair.
 template <class Stream, class Pair>
-bool VisitPair(Stream& s, Pair& pair, bool& isActive) {
-    auto& [bodyA, bodyB, colliderA, colliderB, shapeA, shapeB, reference, pointCount, exists, fixedB, offset, surface,
-           touching, onSeam, isMore, material, cache, features, color, more, triangle] = pair;
+bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact) {
+    auto& [bodyA, bodyB, colliderA, colliderB, shapeA, shapeB, cache, contact, more, pointCount, exists, fixedB, offset,
+           surface, touching, onSeam, isMore, material] = pair;
     auto& [kind, indexA, indexB, axis] = cache;
     const uint8_t bits = VisitBits(s, exists, fixedB, offset, surface, touching, onSeam, isMore, isActive);
     if constexpr (!Stream::kWrites) {
@@ -249,19 +249,23 @@ bool VisitPair(Stream& s, Pair& pair, bool& isActive) {
         isMore = bits >> 6 & 1;
         isActive = bits >> 7 & 1;
         material = 0;
-        more = ~0u;
-        triangle = 0;
-        color.slot = 0;
+        more = contact = ~0u;
     }
     if (!exists) return false;
-    s(colliderA, colliderB, pointCount, color.color, kind);
-    if (color.color != ColorSlot{}.color) s(color.slot);
+    s(colliderA, colliderB, pointCount, hasContact, kind);
     if (kind != PairCache::Kind::None) s(indexA, indexB, axis);
     else if constexpr (!Stream::kWrites) cache = {};
-    if (surface) s(material, more, triangle);
-    if (surface || pointCount > 0) s(reference);
-    for (uint32_t i = 0; i < std::min<uint32_t>(pointCount, Manifold::kMaxPoints); ++i) s(features[i]);
+    if (surface) s(material, more);
     return true;
+}
+
+// Except the pair's index; for a pair with this many points.
+template <class Stream, class Contact>
+void VisitContact(Stream& s, Contact& contact, uint32_t points) {
+    auto& [reference, features, color, triangle, pair] = contact;
+    s(reference, triangle, color.color);
+    if (color.color != ColorSlot{}.color) s(color.slot);
+    for (uint32_t i = 0; i < std::min<uint32_t>(points, Manifold::kMaxPoints); ++i) s(features[i]);
 }
 
 // For a pair with this many points.

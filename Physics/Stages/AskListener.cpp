@@ -24,7 +24,7 @@ struct ContactAxes {
 ContactView View(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs, uint32_t index,
                  const ContactAxes& axes, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
     const Pair& pair = pairs.pairs[index];
-    const ContactRecord& record = pairs.records[index];
+    const ContactRecord& record = pairs.RecordOf(pair);
     const Pose poseA = bodies.CenterPoseOf(pair.bodyA), poseB = bodies.CenterPoseOf(pair.bodyB);
     for (size_t i = 0; i < pair.pointCount; ++i) {
         const ContactRecord::Point& p = record.points[i];
@@ -52,8 +52,9 @@ ContactView ViewContact(const BodyStore& bodies, const ColliderStore& colliders,
 ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
                               uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
     const Pair& pair = pairs.pairs[index];
-    const float* n = pairs.records[index].normal;
-    Quaternion bInA = pair.reference.rotation;  // relative rotation of the bodies when the normal was found
+    const float* n = pairs.RecordOf(pair).normal;
+    Quaternion bInA =
+        pairs.contacts[pair.contact].reference.rotation;  // relative rotation of the bodies when the normal was found
     if (pair.offset)
         bInA = LocalOf(bodies, colliders, pair.colliderA).rotation * bInA *
                LocalOf(bodies, colliders, pair.colliderB).rotation.Conjugate();
@@ -82,7 +83,8 @@ ContactChange AskAbout(const ContactListener& listener, const ContactView& conta
 
 bool AskListener(const ContactListener& listener, const BodyStore& bodies, const ColliderStore& colliders,
                  PairStore& pairs, uint32_t index) {
-    ContactRecord& record = pairs.records[index];
+    const uint32_t contact = pairs.pairs[index].contact;
+    ContactRecord& record = pairs.records[contact];
     ContactView::Point room[ContactRecord::kMaxPoints];
     const ContactView view = ViewContact(bodies, colliders, pairs, index, room);
     CombineMaterials(bodies, pairs, index);
@@ -91,7 +93,7 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
     record.restitution = change.restitution;
     record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceAngularVelocity);
     record.Set(ContactRecord::kMassOverride, !change.massOverride.IsNone());
-    pairs.massOverrides[index] = change.massOverride;
+    pairs.massOverrides[contact] = change.massOverride;
     record.Set(ContactRecord::kSensed, change.isSensor && !change.ignore);
     const bool acts = !change.ignore && !change.isSensor;
     if (!acts) Forget(record);

@@ -80,7 +80,8 @@ void ForgetImpulses(const BodyStore& bodies, const ColliderStore& colliders, Pai
                     uint32_t body) {
     VisitPairsOf(bodies, colliders, pairs, {&body, 1}, [&](uint32_t first) {
         for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.pairs[pair].more) {
-            ContactRecord& record = pairs.records[pair];
+            if (pairs.pairs[pair].contact == PairStore::kNone) continue;
+            ContactRecord& record = pairs.RecordOf(pairs.pairs[pair]);
             std::fill(std::begin(record.impulse), std::end(record.impulse), 0.0f);
             std::fill(std::begin(record.frictionImpulse), std::end(record.frictionImpulse), 0.0f);
             record.twistImpulse = 0;

@@ -23,12 +23,22 @@ constexpr uint32_t kColors = ConstraintColoring::kColors;
 using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
 
+// The contents are rewritten. Room for an eighth more: resize would double it.
+template <class T>
+void ResizeTo(std::vector<T>& list, size_t count) {
+    if (count > list.capacity()) {
+        list.clear();
+        list.reserve(count + count / 8);
+    }
+    list.resize(count);
+}
+
 void SortBodies(const BodyStore& bodies, const Islands& islands, SolverLayout& layout, ScratchArena& scratch) {
     std::span<uint32_t> next = scratch.Allocate<uint32_t>(islands.groups);
     std::fill(next.begin(), next.end(), 0u);
     for (uint32_t group : islands.groupOf)
         if (group != Islands::kNone) ++next[group];
-    layout.bodies.resize(ExclusivePrefixSum(next));
+    ResizeTo(layout.bodies, ExclusivePrefixSum(next));
     for (uint32_t g = 0; g < islands.groups; ++g) layout.groups[g].bodiesBegin = next[g];
     for (size_t i = 0; i < islands.groupOf.size(); ++i)
         if (islands.groupOf[i] != Islands::kNone) layout.bodies[next[islands.groupOf[i]]++] = bodies.awake[i];
@@ -42,12 +52,12 @@ BatchRange MakeRange(uint32_t first, uint32_t contacts, uint32_t& batches) {
     return range;
 }
 
-// Reserves an eighth more than needed: resize would double the largest buffers of a step. The contents are rewritten.
+// Reserves a sixteenth more than needed: resize would double the largest buffers of a step. The contents are rewritten.
 template <class Batch>
 void GrowTo(std::vector<Batch>& batches, uint32_t count) {
     if (batches.size() >= count) return;
     batches.clear();
-    batches.reserve(count + count / 8 + 1);
+    batches.reserve(count + count / 16 + 1);
     batches.resize(batches.capacity());
 }
 
@@ -90,7 +100,7 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     }
     layout.colorCount = static_cast<uint32_t>(std::popcount(used));
     const auto sort = [&](Kind kind, std::span<uint32_t> next, std::vector<Entry>& sorted) {
-        sorted.resize(ExclusivePrefixSum(next));
+        ResizeTo(sorted, ExclusivePrefixSum(next));
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
             if (c < kColors) sorted[next[keyOf(c, entry)]++] = entry;
         });
@@ -111,24 +121,26 @@ void VisitContacts(const SolverLayout& layout, const SolverGroup& group, Visit&&
     }
 }
 
-// Calls visit(entry, substeps) for the contacts of groups with substeps of their own.
+// Calls visit({pair, substeps}) for the contacts of groups with substeps of their own, without those that were removed
+// since the layout was made.
 template <class Visit>
-void VisitContactsUnderLoad(const SolverLayout& layout, Visit&& visit) {
+void VisitContactsUnderLoad(const SolverLayout& layout, const PairStore& pairs, Visit&& visit) {
     for (const SolverGroup& group : layout.groups)
         if (group.effort.substeps > 0)
-            VisitContacts(layout, group, [&](const Entry& entry) { visit(entry, group.effort.substeps); });
+            VisitContacts(layout, group, [&](const Entry& entry) {
+                const uint32_t pair = pairs.contacts[entry.constraint].pair;
+                if (pair != PairStore::kNone) visit(SolvedContact{pair, group.effort.substeps});
+            });
 }
 
-std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, const SavedEfforts& saved,
-                                                 ScratchArena& scratch) {
+std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, const PairStore& pairs,
+                                                 const SavedEfforts& saved, ScratchArena& scratch) {
     if (saved.areRestored) return saved.contacts;
     size_t count = 0;
-    VisitContactsUnderLoad(layout, [&](const Entry&, int) { ++count; });
+    VisitContactsUnderLoad(layout, pairs, [&](const SolvedContact&) { ++count; });
     std::span<SolvedContact> contacts = scratch.Allocate<SolvedContact>(count);
     size_t next = 0;
-    VisitContactsUnderLoad(layout, [&](const Entry& entry, int substeps) {
-        contacts[next++] = {entry.constraint, substeps};
-    });
+    VisitContactsUnderLoad(layout, pairs, [&](const SolvedContact& contact) { contacts[next++] = contact; });
     return contacts;
 }
 
@@ -142,13 +154,14 @@ void LimitImpulses(std::span<const SolvedContact> before, const SolverLayout& la
     for (const SolverGroup& group : layout.groups)
         if (group.effort.substeps > usualSubsteps)
             VisitContacts(layout, group, [&](const Entry& entry) {
-                substeps[entry.constraint] = static_cast<uint8_t>(group.effort.substeps);
+                substeps[pairs.contacts[entry.constraint].pair] = static_cast<uint8_t>(group.effort.substeps);
             });
     for (const SolvedContact& solved : before) {
-        const int most = 2 * substeps[solved.contact];
-        if (solved.substeps <= most) continue;
+        const int most = 2 * substeps[solved.pair];
+        const uint32_t contact = pairs.pairs[solved.pair].contact;
+        if (solved.substeps <= most || contact == PairStore::kNone) continue;
         const float part = static_cast<float>(most) / static_cast<float>(solved.substeps);
-        ContactRecord& record = pairs.records[solved.contact];
+        ContactRecord& record = pairs.records[contact];
         for (float& impulse : record.impulse) impulse *= part;
         for (float& impulse : record.frictionImpulse) impulse *= part;
         record.twistImpulse *= part;
@@ -161,6 +174,9 @@ void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& color
                      const SavedEfforts& restored, SavedEfforts& described) {
     if (restored.areRestored) {
         described = restored;
+        std::erase_if(described.contacts, [&](const SolvedContact& solved) {
+            return solved.pair >= pairs.pairs.size() || pairs.pairs[solved.pair].contact == PairStore::kNone;
+        });
         described.areCurrent = restored.AreTaken(coloring, pairs);
         if (!described.areCurrent) described.groups.clear();
         return;
@@ -168,10 +184,8 @@ void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& color
     described.areCurrent = layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion;
     described.groups.clear();
     described.contacts.clear();
-    VisitContactsUnderLoad(layout, [&](const Entry& entry, int substeps) {
-        described.contacts.push_back({entry.constraint, substeps});
-    });
-    std::ranges::sort(described.contacts, {}, &SolvedContact::contact);
+    VisitContactsUnderLoad(layout, pairs, [&](const SolvedContact& contact) { described.contacts.push_back(contact); });
+    std::ranges::sort(described.contacts, {}, &SolvedContact::pair);
     if (!described.areCurrent) return;
     for (const SolverGroup& group : layout.groups) {
         if (!group.effort.IsAny()) continue;
@@ -197,7 +211,7 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
     if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion) return;
     layout.version = coloring.Version();
     layout.loadVersion = pairs.loadVersion;
-    const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, saved, scratch);
+    const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, pairs, saved, scratch);
     const bool asSaved = saved.AreTaken(coloring, pairs);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
     FindJointTrees(bodies, coloring, joints, step.settings, layout.trees, scratch);

@@ -8,6 +8,7 @@
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Materials.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
@@ -75,6 +76,28 @@ float MotionBeforeCast(const CollideStores& stores, const Pair& pair) {
     return motion;
 }
 
+// Records the contact of a pair that has none, if it has points: it gets its place after the loop.
+void MakeContact(const CollideStores& stores, const PairView& view, uint32_t index, const Manifold& manifold,
+                 WorkerFindings& findings) {
+    NewContact made;
+    WriteManifold(stores, view, manifold, made.contact, made.record);
+    if (view.pair.pointCount == 0) return;
+    made.contact.reference = view.bInA;
+    made.contact.pair = index;
+    findings.newContacts.push_back(made);
+}
+
+// What follows from the contact of a pair with a convex shape or a plane.
+PairChange LookAtContact(const CollideStores& stores, uint32_t index, const RelativePose& bInA,
+                         WorkerFindings& findings) {
+    const Pair& pair = stores.pairs.pairs[index];
+    if (pair.pointCount > 0)
+        NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, bInA, findings);
+    const PairChange change = NoteTouching(stores, index, findings);
+    if (pair.pointCount == 0) return PairChange::Ended;  // also if the listener had ignored it
+    return TouchesSleepingBody(stores.bodies, pair) ? PairChange::WakesOther : change;
+}
+
 PairChange CollidePair(const CollideStores& stores, std::span<PairChange> changes, uint32_t index,
                        WorkerFindings& findings) {
     Pair& pair = stores.pairs.pairs[index];
@@ -90,12 +113,12 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     const auto reachOf = [&](float motion) {
         return SpeculativeDistance(stores.step.settings, pair) + std::min(motion, mostMotion);
     };
-    if (!pair.surface && pair.pointCount == 0 && !pair.offset && BallsApart(stores, pair, reachOf(closing)))
+    if (pair.contact == PairStore::kNone && !pair.offset && BallsApart(stores, pair, reachOf(closing)))
         return PairChange::None;
     const float reachAhead = reachOf(closing + TurningMotion(stores, pair));
     if (pair.surface) return CollideWithSurface(stores, changes, index, reachAhead, findings);
     const PairView view = ViewPair(stores.bodies, stores.colliders, stores.pairs, index);
-    if (pair.pointCount > 0 && HardlyMoved(view)) {
+    if (pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact])) {
         ++findings.kept;
     } else {
         CollideSettings settings;
@@ -109,13 +132,15 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
             Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB),
                     WithDistinctCenters(stores.bodies, stores.colliders, pair, view.bInA), settings, pair.cache,
                     manifold, findings.libccd);
-        WriteManifold(stores, view, manifold);
-        pair.reference = view.bInA;
+        if (pair.contact == PairStore::kNone) {
+            if (manifold.pointCount > 0) MakeContact(stores, view, index, manifold, findings);
+            return PairChange::None;
+        }
+        PairContact& contact = stores.pairs.contacts[pair.contact];
+        WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair));
+        contact.reference = view.bInA;
     }
-    if (pair.pointCount > 0)
-        NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
-    const PairChange change = NoteTouching(stores, index, findings);
-    return TouchesSleepingBody(stores.bodies, pair) ? PairChange::WakesOther : change;
+    return LookAtContact(stores, index, view.bInA, findings);
 }
 
 // Prefetches data of the next pairs while this one is collided.
@@ -151,6 +176,45 @@ void CollideListed(const CollideStores& stores, std::span<const uint32_t> list, 
     });
 }
 
+// Lists of so many new contacts are always kept: 64 KB.
+constexpr size_t kFewContacts = 256;
+
+// Copies new contacts to their places.
+void AddNewContacts(const CollideStores& stores, PairUpdates& updates, const StepWorkers& workers) {
+    size_t count = 0;
+    for (const WorkerFindings& findings : workers.findings) count += findings.newContacts.size();
+    if (count == 0) return;
+    PairStore& pairs = stores.pairs;
+    pairs.ReserveContacts(count);
+    const std::span<const NewContact*> all = workers.scratch.Allocate<const NewContact*>(count);
+    count = 0;
+    for (const WorkerFindings& findings : workers.findings)
+        for (const NewContact& made : findings.newContacts) {
+            pairs.AddContact(made.contact.pair);
+            all[count++] = &made;
+        }
+    workers.jobs.ParallelFor(static_cast<uint32_t>(count), 16, [&](JobRange range) {
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            const uint32_t index = all[i]->contact.pair, contact = pairs.pairs[index].contact;
+            pairs.contacts[contact] = all[i]->contact;
+            pairs.records[contact] = all[i]->record;
+            CombineMaterials(stores.bodies, pairs, index);
+            updates.changes[index] =
+                LookAtContact(stores, index, pairs.contacts[contact].reference, workers.findings[range.worker]);
+        }
+    });
+    // Any worker may find all of as many in a later step. The lists of the first step with very many, in which most
+    // contacts of a world begin, are not kept: they are as large as the contacts.
+    const bool areMany = count > std::max(kFewContacts, pairs.contacts.size() / 8);
+    const bool isStart = areMany && !updates.hadManyNewContacts;
+    updates.hadManyNewContacts |= areMany;
+    for (WorkerFindings& findings : workers.findings) {
+        findings.newContacts.clear();
+        if (isStart) findings.newContacts.shrink_to_fit();
+        else findings.newContacts.reserve(count);
+    }
+}
+
 void CountContacts(std::span<WorkerFindings> workers, StepReport& report) {
     for (WorkerFindings& f : workers) {
         report.contacts += std::exchange(f.contacts, 0);
@@ -166,6 +230,7 @@ void Collide(const StepContext& step, const BodyStore& bodies, const ColliderSto
              StepReport& report) {
     const CollideStores stores{step, bodies, colliders, joints, coloring, pairs};
     CollideAllActive(stores, updates.changes, workers);
+    AddNewContacts(stores, updates, workers);
     AddMoreManifolds(stores, updates, workers.findings);
     CountContacts(workers.findings, report);
 }
@@ -175,6 +240,7 @@ void CollideActivated(const StepContext& step, const BodyStore& bodies, const Co
                       PairUpdates& updates, const StepWorkers& workers, StepReport& report) {
     const CollideStores stores{step, bodies, colliders, joints, coloring, pairs};
     CollideListed(stores, updates.activated, updates.changes, workers);
+    AddNewContacts(stores, updates, workers);
     AddMoreManifolds(stores, updates, workers.findings);
     CountContacts(workers.findings, report);
 }

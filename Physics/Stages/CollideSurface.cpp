@@ -16,21 +16,24 @@ void VisitManifolds(const PairStore& pairs, uint32_t pair, Visit&& visit) {
     for (; pair != PairStore::kNone; pair = pairs.pairs[pair].more) visit(pair);
 }
 
-int CommonFeatures(const Pair& pair, const Manifold& manifold) {
+int CommonFeatures(const PairStore& pairs, uint32_t index, const Manifold& manifold) {
+    const Pair& pair = pairs.pairs[index];
+    const uint32_t(&features)[Manifold::kMaxPoints] = pairs.contacts[pair.contact].features;
     int count = 0;
     for (int i = 0; i < pair.pointCount; ++i)
-        for (int j = 0; j < manifold.pointCount; ++j) count += pair.features[i] == manifold.points[j].feature;
+        for (int j = 0; j < manifold.pointCount; ++j) count += features[i] == manifold.points[j].feature;
     return count;
 }
 
 void Write(const CollideStores& stores, const PairView& view, uint32_t index, const SurfaceManifold& contact) {
     Pair& pair = stores.pairs.pairs[index];
-    pair.triangle = contact.triangle;
+    PairContact& place = stores.pairs.contacts[pair.contact];
+    place.triangle = contact.triangle;
     if (pair.material != contact.material || pair.isMore) {
         pair.material = contact.material;
         CombineMaterials(stores.bodies, stores.pairs, index);
     }
-    WriteManifold(stores, {pair, stores.pairs.records[index], view.bodyBInA, view.bInA, view.before}, contact.manifold);
+    WriteManifold(stores, {pair, view.bodyBInA, view.bInA}, contact.manifold, place, stores.pairs.RecordOf(pair));
 }
 
 // Motion of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
@@ -64,8 +67,7 @@ void WriteManifolds(const CollideStores& stores, const PairView& view, uint32_t 
         int most = 0;
         size_t best = places.size();
         for (size_t i = 0; i < places.size(); ++i) {
-            const int common =
-                places[i] == kTaken ? 0 : CommonFeatures(stores.pairs.pairs[places[i]], found[m].manifold);
+            const int common = places[i] == kTaken ? 0 : CommonFeatures(stores.pairs, places[i], found[m].manifold);
             if (common > most) {
                 most = common;
                 best = i;
@@ -99,7 +101,8 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     bool touches = false;
     VisitManifolds(stores.pairs, first, [&](uint32_t index) { touches |= stores.pairs.pairs[index].pointCount > 0; });
     const PairView view = ViewPair(stores.bodies, stores.colliders, stores.pairs, first);
-    if (touches && HardlyMoved(view)) {
+    std::vector<PairContact>& contacts = stores.pairs.contacts;
+    if (touches && HardlyMoved(view, contacts[view.pair.contact])) {
         ++findings.kept;
     } else {
         CollideSettings settings;
@@ -108,13 +111,15 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
         std::vector<uint32_t>& touched = findings.surfaceTouched;
         touched.clear();
         VisitManifolds(stores.pairs, first, [&](uint32_t index) {
-            if (stores.pairs.pairs[index].pointCount > 0) touched.push_back(stores.pairs.pairs[index].triangle);
+            const Pair& pair = stores.pairs.pairs[index];
+            if (pair.pointCount > 0) touched.push_back(contacts[pair.contact].triangle);
         });
         CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings,
                        {MotionInA(stores, view), touched}, findings.surface);
         findings.libccd += findings.surface.Counters();
         WriteManifolds(stores, view, first, findings);
-        VisitManifolds(stores.pairs, first, [&](uint32_t index) { stores.pairs.pairs[index].reference = view.bInA; });
+        VisitManifolds(stores.pairs, first,
+                       [&](uint32_t index) { contacts[stores.pairs.pairs[index].contact].reference = view.bInA; });
     }
     PairChange ofFirst = PairChange::None;
     bool wakes = false;

@@ -1,6 +1,6 @@
-// Assigns colors to contacts that began, and frees those of contacts that ended. Serial, in an order that depends only
-// on which bodies touch: the colors do not depend on the number of threads, nor on the rounding of bounds, so that a
-// scene far from the origin is solved like one at the origin.
+// Assigns colors to contacts that began, frees those of contacts that ended, and removes contacts without points.
+// Serial, in an order that depends only on which bodies touch: the colors do not depend on the number of threads, nor
+// on the rounding of bounds, so that a scene far from the origin is solved like one at the origin.
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/Colors.h>
 
@@ -12,7 +12,7 @@ namespace fulcrum {
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
            std::vector<uint32_t>& began) {
     coloring.ReserveBodies(bodyCount);
-    began.reserve(pairs.pairs.capacity());  // so that steps in steady state do not allocate
+    began.reserve(pairs.contacts.capacity());  // so that steps in steady state do not allocate
     began.clear();
     VisitChanges(changes, [&](uint32_t index) {
         const PairChange change = changes[index];
@@ -21,6 +21,7 @@ void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, 
             case PairChange::Began: began.push_back(index); break;
             case PairChange::Ended:
                 UncolorPair(pairs, coloring, index);
+                if (pairs.pairs[index].pointCount == 0 && !pairs.pairs[index].surface) pairs.RemoveContact(index);
                 if (pairs.pairs[index].isMore) pairs.active.Erase(index);
                 break;
             case PairChange::Dead: RemovePair(pairs, coloring, index); break;
@@ -31,8 +32,9 @@ void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, 
     // Not by pair index, which depends on when bounds began to overlap.
     std::sort(began.begin(), began.end(), [&](uint32_t x, uint32_t y) {
         const Pair &a = pairs.pairs[x], &b = pairs.pairs[y];
-        return std::tie(a.colliderA, a.colliderB, a.features[0], x) <
-               std::tie(b.colliderA, b.colliderB, b.features[0], y);
+        const uint32_t featureA = pairs.contacts[a.contact].features[0],
+                       featureB = pairs.contacts[b.contact].features[0];
+        return std::tie(a.colliderA, a.colliderB, featureA, x) < std::tie(b.colliderA, b.colliderB, featureB, y);
     });
     for (uint32_t index : began) {
         ColorPair(pairs, coloring, index);

@@ -110,7 +110,7 @@ void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const
         const Pair& pair = pairs.pairs[index];
         if (IsLeftOut(bodies, joints, pair)) continue;
         const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
-        const float* n = pairs.records[index].normal;
+        const float* n = pairs.RecordOf(pair).normal;
         const float down = Dot(Rotate(bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2])), step.settings.gravity);
         const BodyDynamics &upper = down < 0 ? b : a, &lower = down < 0 ? a : b;
         if (!(upper.inverseMass > 0)) continue;
@@ -134,13 +134,14 @@ void NoteForces(const StepContext& step, const ConstraintColoring& coloring, con
     using Kind = ConstraintColoring::Kind;
     const auto note = [&](uint32_t, const ConstraintColoring::Entry& entry) {
         const float impulse = pairs.records[entry.constraint].TotalImpulse();
-        const Pair& pair = pairs.pairs[entry.constraint];
+        const uint32_t index = pairs.contacts[entry.constraint].pair;
+        const Pair& pair = pairs.pairs[index];
         const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
         const BodyDynamics& lighter = b.inverseMass > a.inverseMass ? b : a;
         const float part = impulse / step.lastSubstepDt * lighter.inverseMass * step.softness / SizeOf(lighter);
         const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
         const uint32_t level = LevelOf(part / LargestUnnoted(target));
-        LoadLevel& load = pairs.loads[entry.constraint];
+        LoadLevel& load = pairs.loads[index];
         load.stiffness = 0;  // the springs of the shorter step were stiffer than any of this one
         if (level <= load.level || IsLeftOut(bodies, joints, pair)) return;
         load.level = load.recent = static_cast<uint8_t>(level);
@@ -183,7 +184,7 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
     Real part = sink * Real(1 / LargestUnnoted(scale.target)) / Sqrt(squaredSize);
     if (bodies.targetCount > 0)
         for (int lane = 0; lane < batch.count; ++lane) {
-            const Pair& pair = pairs.pairs[batch.contact[lane]];
+            const Pair& pair = pairs.PairOf(batch.contact[lane]);
             const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, scale.target);
             part.Set(lane, sink[lane] * (1 / LargestUnnoted(target)) / std::sqrt(squaredSize[lane]));
         }
@@ -194,10 +195,10 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
     bool changed = false;
     for (int lane = 0; lane < batch.count; ++lane) {
         if (!(loaded >> lane & 1u)) continue;
-        LoadLevel& load = pairs.loads[batch.contact[lane]];
+        LoadLevel& load = pairs.loads[pairs.contacts[batch.contact[lane]].pair];
         load.stiffness = scale.stiffness;
         const uint8_t level = NextLevel(load, LevelOf(part[lane]), unseen[lane], scale.forgets);
-        if (level == load.level || IsLeftOut(bodies, joints, pairs.pairs[batch.contact[lane]])) continue;
+        if (level == load.level || IsLeftOut(bodies, joints, pairs.PairOf(batch.contact[lane]))) continue;
         load.level = level;
         changed = true;
     }

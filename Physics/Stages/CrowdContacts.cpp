@@ -37,7 +37,7 @@ DeepestPoint DeepestPointOf(const BodyStore& bodies, const PairStore& pairs, uin
     };
     DeepestPoint deepest;
     for (int i = 0; i < pair.pointCount; ++i) {
-        const ContactRecord::Point& p = pairs.records[index].points[i];
+        const ContactRecord::Point& p = pairs.RecordOf(pair).points[i];
         const Position onA = a.Transform(Vector3(p.onA[0], p.onA[1], p.onA[2])),
                        onB = b.Transform(Vector3(p.onB[0], p.onB[1], p.onB[2]));
         const float separation = Dot<float>(normal, Vector3((onB - onA).cast<float>()));
@@ -82,9 +82,10 @@ size_t MostRepeated(std::span<const uint32_t> numbers) {
 
 }  // namespace
 
-Vector3 ContactNormal(const BodyStore& bodies, const PairStore& pairs, uint32_t pair) {
-    const float(&n)[3] = pairs.records[pair].normal;
-    return Rotate(bodies.RotationOf(pairs.pairs[pair].bodyA), Vector3(n[0], n[1], n[2]));
+Vector3 ContactNormal(const BodyStore& bodies, const PairStore& pairs, uint32_t index) {
+    const Pair& pair = pairs.pairs[index];
+    const float(&n)[3] = pairs.RecordOf(pair).normal;
+    return Rotate(bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2]));
 }
 
 RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& colliders, const Pair& pair,

@@ -48,8 +48,8 @@ bool HasImpulse(const ContactNote& note) {
 bool Touches(const ContactSources& from, uint32_t index, float most) {
     const Pair& pair = from.pairs.pairs[index];
     if (pair.onSeam || pair.pointCount == 0) return false;
-    if (!pair.touching && !from.pairs.records[index].Has(ContactRecord::kSensed)) return false;
-    if (pair.touching && HasImpulse(from.notes[index])) return true;
+    if (!pair.touching && !from.pairs.RecordOf(pair).Has(ContactRecord::kSensed)) return false;
+    if (pair.touching && HasImpulse(from.notes[pair.contact])) return true;
     ContactView::Point room[ContactRecord::kMaxPoints];
     return std::ranges::any_of(ViewOf(from, index, room).points,
                                [&](const ContactView::Point& point) { return point.separation <= most; });
@@ -203,7 +203,7 @@ void Swap(ContactEvent::Manifold& manifold) {
 ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, float most, float& approachSpeed) {
     const Pair& pair = from.pairs.pairs[index];
     static constexpr ContactNote kNone{};  // of contacts that are not solved
-    const ContactNote& note = pair.touching ? from.notes[index] : kNone;
+    const ContactNote& note = pair.touching ? from.notes[pair.contact] : kNone;
     ContactView::Point room[ContactRecord::kMaxPoints];
     const ContactView view = ViewOf(from, index, room);
     const Position normal = view.normal.cast<double>();
@@ -211,7 +211,7 @@ ContactEvent::Manifold ManifoldOf(const ContactSources& from, uint32_t index, fl
         .normal = pair.touching ? Vector3(note.normal[0], note.normal[1], note.normal[2]) : view.normal,
         .frictionImpulse = Vector3(note.frictionImpulse[0], note.frictionImpulse[1], note.frictionImpulse[2]),
         .twistImpulse = note.twistImpulse,
-        .triangle = pair.triangle,
+        .triangle = from.pairs.contacts[pair.contact].triangle,
         .material = pair.material};
     const auto addWithin = [&](float distance) {
         for (size_t i = 0; i < view.points.size(); ++i) {

@@ -156,10 +156,9 @@ void DescribePair(const BodyStore& bodies, const ColliderStore& colliders, PairS
     pair.shapeA = static_cast<const ConvexShape*>(a.shape);  // dynamic bodies have convex shapes
     pair.shapeB = b.shape;
     pair.surface = b.shape->IsSurface();
-    CombineMaterials(bodies, pairs, index);
 }
 
-// Creates new pairs and activates resting ones, from sorted keys.
+// Creates new pairs and activates resting ones, from sorted keys. Pairs with surfaces have contacts from the start.
 void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std::span<const uint64_t> keys,
                    PairStore& pairs, std::vector<uint32_t>& activated, const StepWorkers& workers) {
     // Where many bodies have been added, all of their pairs are: the arrays move once.
@@ -178,6 +177,11 @@ void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std:
     workers.jobs.ParallelFor(count, 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) DescribePair(bodies, colliders, pairs, added[i]);
     });
+    for (const uint32_t index : added.first(count)) {
+        if (!pairs.pairs[index].surface) continue;
+        pairs.AddContact(index);
+        CombineMaterials(bodies, pairs, index);
+    }
 }
 
 // Reserves the lists by the size of the world, so that steps in steady state do not allocate, whichever worker does the

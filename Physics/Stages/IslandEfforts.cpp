@@ -222,7 +222,7 @@ private:
     }
 
     void AddNeed(const Entry& entry) {
-        const LoadLevel& load = pairs_.loads[entry.constraint];
+        const LoadLevel& load = pairs_.loads[pairs_.contacts[entry.constraint].pair];
         if (load.level == 0 && load.recent == 0) return;
         const uint32_t root = RootOf(MovingBodyOf(entry));
         if (sizes_[root] > mostLoaded_) return;

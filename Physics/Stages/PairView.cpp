@@ -53,9 +53,9 @@ bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 
 // Whether the contact normal changed direction. The impulses of the last step along the new normal would then no longer
 // balance the bodies' other contacts, and opposite contacts of a body in a thin floor would throw it out. A rolling
 // body keeps its normal in the other one's frame. Normals are in the frame of shape A.
-bool NormalTurned(const PairView& v, const Vector3& before, const Vector3& now) {
+bool NormalTurned(const PairView& v, const RelativePose& reference, const Vector3& before, const Vector3& now) {
     if (Dot<float>(before, now) >= kSameNormal) return false;
-    return Dot<float>(InverseRotate(v.before.rotation, before), InverseRotate(v.bInA.rotation, now)) < kSameNormal;
+    return Dot<float>(InverseRotate(reference.rotation, before), InverseRotate(v.bInA.rotation, now)) < kSameNormal;
 }
 
 // Clears the manifold.
@@ -70,15 +70,15 @@ void Forget(Pair& pair, ContactRecord& record) {
 PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t index) {
     Pair& pair = pairs.pairs[index];
     const RelativePose bInA = Relative(bodies.CenterPoseOf(pair.bodyA), bodies.CenterPoseOf(pair.bodyB));
-    PairView view{pair, pairs.records[index], bInA, bInA, pair.reference};
+    PairView view{pair, bInA, bInA};
     if (pair.offset)
         view.bInA =
             Inverse(LocalOf(bodies, colliders, pair.colliderA)) * bInA * LocalOf(bodies, colliders, pair.colliderB);
     return view;
 }
 
-bool HardlyMoved(const PairView& v) {
-    const RelativePose& old = v.pair.reference;
+bool HardlyMoved(const PairView& v, const PairContact& contact) {
+    const RelativePose& old = contact.reference;
     const float size = std::min(v.pair.shapeA->OuterRadius(), v.pair.shapeB->OuterRadius());
     const float distance = std::min(kKeptDistance, kKeptFraction * size);
     if (LengthSquared(Vector3(v.bInA.position - old.position)) > distance * distance) return false;
@@ -94,9 +94,9 @@ float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {
     return touches ? 2.0f : 1.0f;
 }
 
-void WriteManifold(const CollideStores& stores, const PairView& v, const Manifold& manifold) {
+void WriteManifold(const CollideStores& stores, const PairView& v, const Manifold& manifold, PairContact& contact,
+                   ContactRecord& record) {
     Pair& pair = v.pair;
-    ContactRecord& record = v.record;
     const Vector3 normal =
         pair.offset ? Rotate(stores.colliders.shapes[pair.colliderA].local.rotation, manifold.normal) : manifold.normal;
     // With extreme sizes or distances any pair function may overflow: such results are discarded.
@@ -105,13 +105,14 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     if (manifold.pointCount == 0 || !isUsable) return Forget(pair, record);
     const Vector3 oldNormal(record.normal[0], record.normal[1], record.normal[2]);
     const bool goesOn =
-        pair.pointCount > 0 && !NormalTurned(v, DirectionFromBody(stores, pair, oldNormal), manifold.normal);
+        pair.pointCount > 0 &&
+        !NormalTurned(v, contact.reference, DirectionFromBody(stores, pair, oldNormal), manifold.normal);
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     float oldImpulses[Manifold::kMaxPoints];
     std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);
     const int oldCount = goesOn ? pair.pointCount : 0;
     uint32_t oldFeatures[Manifold::kMaxPoints];
-    std::copy(pair.features, pair.features + Manifold::kMaxPoints, oldFeatures);
+    std::copy(contact.features, contact.features + Manifold::kMaxPoints, oldFeatures);
 
     // Velocity of B relative to A, in A's frame.
     const BodyStore& bodies = stores.bodies;
@@ -141,7 +142,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
         record.impulse[count] = 0;
         for (int j = 0; j < oldCount; ++j)
             if (oldFeatures[j] == found.feature) record.impulse[count] = oldImpulses[j];
-        pair.features[count++] = found.feature;
+        contact.features[count++] = found.feature;
     }
     record.pointCount = static_cast<float>(count);
     pair.pointCount = static_cast<uint8_t>(count);

@@ -9,10 +9,8 @@ namespace fulcrum {
 
 struct PairView {
     Pair& pair;
-    ContactRecord& record;
-    RelativePose bodyBInA;       // relative pose of the bodies' center frames
-    RelativePose bInA;           // relative pose of the shapes' center frames
-    const RelativePose& before;  // bInA when the manifold was found
+    RelativePose bodyBInA;  // relative pose of the bodies' center frames
+    RelativePose bInA;      // relative pose of the shapes' center frames
 };
 PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t pair);
 
@@ -31,12 +29,13 @@ struct CollideStores {
 // and 1 for others, which therefore move in exact free flight until the step in which they hit.
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair);
 
-// Whether the manifolds found at pair.reference are still valid.
-bool HardlyMoved(const PairView& view);
+// Whether the manifolds found at contact.reference are still valid.
+bool HardlyMoved(const PairView& view, const PairContact& contact);
 
-// Writes the result of the narrow phase to the record. Impulses are kept for points with matching feature ids. Points
-// farther apart than the speculative distance are kept only if they can touch within the step.
-void WriteManifold(const CollideStores& stores, const PairView& view, const Manifold& manifold);
+// Writes the result of the narrow phase to the pair's contact and record. Impulses are kept for points with matching
+// feature ids. Points farther apart than the speculative distance are kept only if they can touch within the step.
+void WriteManifold(const CollideStores& stores, const PairView& view, const Manifold& manifold, PairContact& contact,
+                   ContactRecord& record);
 
 // Updates the manifolds of a pair with a surface; `reach`, m: the speculative distance. Writes the changes of
 // additional manifolds to `changes`, and returns that of the first. Manifolds without a slot are added to

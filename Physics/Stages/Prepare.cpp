@@ -11,16 +11,17 @@ namespace {
 using Entry = ConstraintColoring::Entry;
 
 template <int N, bool kFixedB>
-void NoteDeepest(const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
+void NoteDeepest(const PairStore& pairs, const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
     Wide<N> lowest(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) lowest = Min(lowest, batch.rows[i].startSeparation);
     if (!(lowest <= Wide<N>(-findings.deepest)).Any()) return;
     for (int lane = 0; lane < batch.count; ++lane) {
         const float depth = -lowest[lane];
-        const uint32_t contact = batch.contact[lane];
-        if (depth < findings.deepest || (depth == findings.deepest && contact >= findings.deepestPair)) continue;
+        if (depth < findings.deepest) continue;
+        const uint32_t pair = pairs.contacts[batch.contact[lane]].pair;
+        if (depth == findings.deepest && pair >= findings.deepestPair) continue;
         findings.deepest = depth;
-        findings.deepestPair = contact;
+        findings.deepestPair = pair;
     }
 }
 
@@ -41,7 +42,7 @@ template <int N, bool kFixedB>
 [[gnu::cold]] void ForgetContacts(PairStore& pairs, const ContactBatch<N, kFixedB>& batch, uint32_t lanes) {
     for (int lane = 0; lane < batch.count; ++lane)
         if (lanes >> lane & 1u) {
-            pairs.pairs[batch.contact[lane]].pointCount = 0;
+            pairs.pairs[pairs.contacts[batch.contact[lane]].pair].pointCount = 0;
             pairs.records[batch.contact[lane]].pointCount = 0;
         }
 }
@@ -89,7 +90,7 @@ void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, std::span<
     if (unusable != 0) ForgetContacts(from.pairs, batch, unusable);
     if (from.hasCrowds) [[unlikely]]
         LimitPushes(from.bodies, from.depenetrationSpeed, bodyB, batch);
-    NoteDeepest(batch, findings);
+    NoteDeepest(from.pairs, batch, findings);
     batch.hasNotes = from.notes && std::ranges::any_of(entries, [&](const Entry& entry) {
                          return AreReported(from.bodies.reportsContacts, entry.bodyA, entry.bodyB);
                      });
@@ -247,7 +248,7 @@ void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintC
              const CrowdState& crowd, PairStore& pairs, JointStore& joints, SolverLayout& layout,
              const StepWorkers& workers, StepReport& report) {
     // Includes contacts that are not solved in this step, e.g. of frozen bodies.
-    layout.notes.assign(step.settings.events.contacts ? pairs.pairs.size() : 0, {});
+    layout.notes.assign(step.settings.events.contacts ? pairs.contacts.size() : 0, {});
     if (coloring.Size() == 0) return;
     const auto fillerOf = [&](const SolverGroup& group) {
         return RowFiller(step, bodies, crowd, EffortOf(step, group), pairs, joints, layout);

@@ -33,7 +33,7 @@ public:
 
     Support Describe(uint32_t index) const {
         const PairView view = View(index);
-        const ContactRecord& record = view.record;
+        const ContactRecord& record = pairs_.RecordOf(view.pair);
         Support support{index, std::numeric_limits<float>::infinity(),
                         Vector3(record.normal[0], record.normal[1], record.normal[2]), Vector3::Zero()};
         for (int i = 0; i < view.pair.pointCount; ++i) {
@@ -55,7 +55,8 @@ public:
         });
         for (size_t i = 0; i < supports.size(); ++i) {
             for (size_t j = 0; j < supports.size(); ++j) {
-                if (i == j || pairs_.records[supports[j].pair].pointCount <= 0 || !Hides(supports[j], supports[i]))
+                if (i == j || pairs_.RecordOf(pairs_.pairs[supports[j].pair]).pointCount <= 0 ||
+                    !Hides(supports[j], supports[i]))
                     continue;
                 if (i < j && Hides(supports[i], supports[j])) continue;
                 RemovePoints(supports[i].pair);
@@ -75,7 +76,8 @@ private:
         const Shape& shape = *view.pair.shapeB;
         float height = std::numeric_limits<float>::infinity();
         if (view.pair.surface) {
-            const TriangleView triangle = static_cast<const SurfaceShape&>(shape).GetTriangle(view.pair.triangle);
+            const TriangleView triangle =
+                static_cast<const SurfaceShape&>(shape).GetTriangle(pairs_.contacts[view.pair.contact].triangle);
             height = -height;
             for (const Vector3& vertex : triangle.vertices) height = std::max(height, Dot(upInB, vertex));
         } else if (shape.IsConvex()) {
@@ -85,7 +87,7 @@ private:
     }
 
     void RemovePoints(uint32_t index) {
-        ContactRecord& record = pairs_.records[index];
+        ContactRecord& record = pairs_.RecordOf(pairs_.pairs[index]);
         record.pointCount = 0;
         for (float& impulse : record.impulse) impulse = 0;
         for (float& impulse : record.frictionImpulse) impulse = 0;
@@ -123,7 +125,7 @@ void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders,
     for (uint32_t index : seams) {
         Pair& pair = pairs.pairs[index];
         pair.onSeam = false;
-        if (pair.exists) pairs.records[index].pointCount = pair.pointCount;
+        if (pair.contact != PairStore::kNone) pairs.RecordOf(pair).pointCount = pair.pointCount;
     }
     seams.clear();
     // Contacts with static and kinematic bodies take the highest free color: few bodies have one in any other.
@@ -139,7 +141,8 @@ void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders,
     std::span<uint64_t> contacts = scratch.Allocate<uint64_t>(others + coloring.At(kHighest).Of(Kind::Fixed).size());
     size_t count = 0;
     VisitFixed(coloring, 0, ConstraintColoring::kOverflow, [&](const auto& entry) {
-        if (several[entry.bodyA]) contacts[count++] = uint64_t(entry.bodyA) << 32 | entry.constraint;
+        if (several[entry.bodyA])
+            contacts[count++] = uint64_t(entry.bodyA) << 32 | pairs.contacts[entry.constraint].pair;
     });
     contacts = contacts.first(count);
     std::sort(contacts.begin(), contacts.end());

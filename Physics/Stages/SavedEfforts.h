@@ -22,7 +22,7 @@ struct SavedEffort {
 
 // A contact of a group with substeps of its own, and their number.
 struct SolvedContact {
-    uint32_t contact;
+    uint32_t pair;
     int substeps;
 };
 

@@ -36,7 +36,7 @@ void Sleep(const StepContext& step, uint32_t candidates, const SleepStores& stor
         if (step.listener)
             pairs.active.Visit([&](uint32_t index) {
                 const Pair& pair = pairs.pairs[index];
-                if (pair.touching && pairs.records[index].Has(ContactRecord::kSurfaceVelocity))
+                if (pair.touching && pairs.RecordOf(pair).Has(ContactRecord::kSurfaceVelocity))
                     awake[roots[bodies.cold[pair.bodyA].awakePlace]] = 1;
             });
         // Members of sleeping islands, sorted by island.

@@ -99,7 +99,7 @@ struct SolverLayout {
     uint64_t jointVersion = 0;              // version of the coloring from which the list was made
     JointTrees trees;
     std::vector<uint32_t> treesByGroup;  // indices of trees, by group
-    std::vector<ContactNote> notes;      // by pair, zero if not in a batch; empty without contact events
+    std::vector<ContactNote> notes;      // by contact, zero if not in a batch; empty without contact events
     uint32_t colorCount = 0;             // colors in use
     uint32_t islands = 0;
     uint64_t version = 0;      // version of the coloring from which this was made

@@ -40,7 +40,7 @@ void CollideActivated(const StepContext& step, const BodyStore& bodies, const Co
 bool WakeHit(const PairStore& pairs, std::span<PairChange> changes, const SleepStores& stores);
 
 // Applies the changes and resets them to None: colors contacts that began, and lists them in `began`; uncolors those
-// that ended; removes dead pairs.
+// that ended, and removes those without points; removes dead pairs.
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
            std::vector<uint32_t>& began);
 

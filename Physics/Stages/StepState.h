@@ -27,6 +27,12 @@ struct MoreManifold {
     SurfaceManifold contact;
 };
 
+// The contact of a pair that had none, without a place yet.
+struct NewContact {
+    PairContact contact;
+    ContactRecord record;
+};
+
 // One worker's results of a stage; merged in an order that does not depend on the distribution of work.
 struct alignas(64) WorkerFindings {
     std::vector<uint32_t> colliders;         // UpdateBounds: those that left their fat bounds
@@ -38,6 +44,7 @@ struct alignas(64) WorkerFindings {
     SurfaceContacts surface;                 // Collide: temporary
     std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     std::vector<MoreManifold> more;                                    // Collide: manifolds without a slot yet
+    std::vector<NewContact> newContacts;                               // Collide
     std::vector<SweepHit> sweepHits;                                   // Continuous
     std::vector<uint64_t> sensorCandidates;                            // Sense
     std::vector<SensorVisit> sensorVisits;                             // likewise
@@ -68,7 +75,8 @@ struct DispersingBody {
     Vector3 push = Vector3::Zero(), ownVelocity = Vector3::Zero();  // m/s, of this step
 };
 
-// Change of an active pair found by Collide, which later stages handle.
+// Change of an active pair found by Collide, which later stages handle. Ended: its contact is not solved any more, or
+// has no points any more.
 enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
 
 // Results of FindPairs and Collide about pairs of this step.
@@ -77,6 +85,7 @@ struct PairUpdates {
     std::vector<uint32_t> activated;          // FindPairs: pairs that it made active
     std::vector<PairChange> changes;          // Collide: by pair; None for those that are not active
     std::vector<MoreManifold> moreManifolds;  // Collide
+    bool hadManyNewContacts = false;          // Collide: in a step, see AddNewContacts
 };
 
 size_t HeapBytes(const PairUpdates& updates);

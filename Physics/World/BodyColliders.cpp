@@ -63,7 +63,10 @@ void RemovePairsOf(WorldState& world, uint32_t collider) {
 // are kept.
 void ForgetManifoldsOf(WorldState& world, uint32_t collider) {
     world.pairs.VisitOf(collider, [&](uint32_t pair) {
-        world.pairs.pairs[pair].reference.position = Vector3::Constant(std::numeric_limits<float>::infinity());
+        const uint32_t contact = world.pairs.pairs[pair].contact;
+        if (contact != PairStore::kNone)
+            world.pairs.contacts[contact].reference.position =
+                Vector3::Constant(std::numeric_limits<float>::infinity());
     });
 }
 
@@ -71,8 +74,10 @@ void ShiftContacts(WorldState& world, uint32_t body, const Vector3& by) {
     VisitColliders(world, body, [&](uint32_t collider) {
         world.pairs.VisitOf(collider, [&](uint32_t first) {
             for (uint32_t index = first; index != PairStore::kNone; index = world.pairs.pairs[index].more) {
-                const bool isA = world.pairs.pairs[index].bodyA == body;
-                for (ContactRecord::Point& point : world.pairs.records[index].points)
+                const Pair& pair = world.pairs.pairs[index];
+                if (pair.contact == PairStore::kNone) continue;
+                const bool isA = pair.bodyA == body;
+                for (ContactRecord::Point& point : world.pairs.RecordOf(pair).points)
                     for (int k = 0; k < 3; ++k) (isA ? point.onA : point.onB)[k] -= by[k];
             }
         });

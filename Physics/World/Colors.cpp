@@ -5,18 +5,21 @@ namespace fulcrum {
 using Coloring = ConstraintColoring;
 
 void ColorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
-    Pair& pair = pairs.pairs[index];
-    if (pair.color.color != 0xFF) return;
+    const Pair& pair = pairs.pairs[index];
+    ColorSlot& color = pairs.contacts[pair.contact].color;
+    if (color.color != 0xFF) return;
     // Contacts with immovable bodies are solved last, so they win.
-    pair.color = coloring.Add(KindOf(pair), EntryOf(pair, index), pair.fixedB);
+    color = coloring.Add(KindOf(pair), EntryOf(pair), pair.fixedB);
 }
 
 void UncolorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
-    Pair& pair = pairs.pairs[index];
-    if (pair.color.color == 0xFF) return;
-    const uint32_t moved = coloring.Remove(KindOf(pair), EntryOf(pair, index), pair.color);
-    pairs.pairs[moved].color.slot = pair.color.slot;
-    pair.color = {};
+    const Pair& pair = pairs.pairs[index];
+    if (pair.contact == PairStore::kNone) return;
+    ColorSlot& color = pairs.contacts[pair.contact].color;
+    if (color.color == 0xFF) return;
+    const uint32_t moved = coloring.Remove(KindOf(pair), EntryOf(pair), color);
+    pairs.contacts[moved].color.slot = color.slot;
+    color = {};
 }
 
 void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {

@@ -15,8 +15,9 @@ inline ConstraintColoring::Kind KindOf(const Pair& pair) {
 inline ConstraintColoring::Entry EntryOf(const Joint& joint, uint32_t index) {
     return {index, joint.body[0], joint.body[1], joint.fixed[0], joint.fixed[1]};
 }
-inline ConstraintColoring::Entry EntryOf(const Pair& pair, uint32_t index) {
-    return {index, pair.bodyA, pair.bodyB, false, pair.fixedB};
+// Of the pair's contact.
+inline ConstraintColoring::Entry EntryOf(const Pair& pair) {
+    return {pair.contact, pair.bodyA, pair.bodyB, false, pair.fixedB};
 }
 
 // Assigns a color to a pair's contact, or removes it; no effect if it already has one, or none.

@@ -73,9 +73,10 @@ void ChangeListener(WorldState& world, const ContactListener* listener) {
     RemoveAllForbiddenPairs(world);
     world.pairs.KeepMassOverrides(listener != nullptr);
     // Resets the previous listener's changes of contacts, and searches for pairs that it had forbidden.
-    for (uint32_t i = 0; i < world.pairs.pairs.size(); ++i) {
-        if (!world.pairs.pairs[i].exists) continue;
-        CombineMaterials(world.bodies, world.pairs, i);
+    for (uint32_t i = 0; i < world.pairs.contacts.size(); ++i) {
+        const uint32_t pair = world.pairs.contacts[i].pair;
+        if (pair == PairStore::kNone) continue;
+        CombineMaterials(world.bodies, world.pairs, pair);
         world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
         for (const auto mark : {ContactRecord::kMassOverride, ContactRecord::kSensed})
             world.pairs.records[i].Set(mark, false);

@@ -40,9 +40,11 @@ PairMaterial MaterialOfPair(const BodyStore& bodies, uint32_t bodyA, uint32_t bo
 
 void CombineMaterials(const BodyStore& bodies, PairStore& pairs, uint32_t index) {
     const Pair& pair = pairs.pairs[index];
+    if (pair.contact == PairStore::kNone) return;
     const PairMaterial material = MaterialOfPair(bodies, pair.bodyA, pair.bodyB, *pair.shapeB, pair.material);
-    pairs.records[index].friction = material.friction;
-    pairs.records[index].restitution = material.restitution;
+    ContactRecord& record = pairs.RecordOf(pair);
+    record.friction = material.friction;
+    record.restitution = material.restitution;
 }
 
 }  // namespace fulcrum

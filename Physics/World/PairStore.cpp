@@ -1,8 +1,10 @@
 #include <Fulcrum/Physics/World/PairStore.h>
 
+#include <Fulcrum/Math/Assert.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace fulcrum {
 
@@ -17,19 +19,21 @@ void ReserveAtLeast(std::vector<T>& elements, size_t count) {
 
 }  // namespace
 
-uint32_t PairStore::FirstPlace(uint64_t key) const {
+uint32_t PairStore::HashOf(uint64_t key) {
     key ^= key >> 32;
     key *= 0x9E3779B97F4A7C15ull;  // Fibonacci hashing
-    return static_cast<uint32_t>(key >> 32) & static_cast<uint32_t>(table_.size() - 1);
+    return static_cast<uint32_t>(key >> 32);
 }
 
 uint32_t PairStore::Find(uint32_t colliderA, uint32_t colliderB) const {
     if (table_.empty()) return kNone;
     const uint64_t key = Key(colliderA, colliderB);
-    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    for (uint32_t i = FirstPlace(key);; i = (i + 1) & mask) {
-        if (table_[i].index == kNone) return kNone;
-        if (table_[i].key == key) return table_[i].index;
+    const uint32_t hash = HashOf(key), mask = static_cast<uint32_t>(table_.size() - 1);
+    for (uint32_t i = hash & mask;; i = (i + 1) & mask) {
+        const Entry& entry = table_[i];
+        if (entry.index == kNone) return kNone;
+        if (entry.hash == hash && Key(pairs[entry.index].colliderA, pairs[entry.index].colliderB) == key)
+            return entry.index;
     }
 }
 
@@ -39,7 +43,7 @@ void PairStore::Grow() {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     for (const Entry& entry : old) {
         if (entry.index == kNone) continue;
-        uint32_t i = FirstPlace(entry.key);
+        uint32_t i = entry.hash & mask;
         while (table_[i].index != kNone) i = (i + 1) & mask;
         table_[i] = entry;
     }
@@ -48,7 +52,6 @@ void PairStore::Grow() {
 void PairStore::Reserve(size_t more) {
     const size_t count = pairs.size() + more - std::min(more, free_.size());
     ReserveAtLeast(pairs, count);
-    ReserveAtLeast(records, count);
     ReserveAtLeast(links_, count);
     ReserveAtLeast(loads, count);
 }
@@ -61,27 +64,59 @@ uint32_t PairStore::Allocate() {
     } else {
         index = static_cast<uint32_t>(pairs.size());
         ReserveAtLeast(pairs, pairs.size() + 1);
-        ReserveAtLeast(records, records.size() + 1);
+        ReserveAtLeast(links_, links_.size() + 1);
+        ReserveAtLeast(loads, loads.size() + 1);
         pairs.emplace_back();
-        records.emplace_back();
         links_.emplace_back();
         loads.emplace_back();
-        if (keepsMassOverrides_) massOverrides.emplace_back();
         if (keepsReported_) reported.emplace_back();
         active.Reserve(index + 1);
         free_.reserve(pairs.capacity());  // so that Remove never allocates
     }
     pairs[index] = {};
-    records[index] = {};
     loads[index] = {};
     if (keepsReported_) reported[index] = {};
     pairs[index].exists = true;
     return index;
 }
 
+void PairStore::ReserveContacts(size_t more) {
+    const size_t count = contacts.size() + more - std::min(more, freeContacts_.size());
+    ReserveAtLeast(contacts, count);
+    ReserveAtLeast(records, count);
+    freeContacts_.reserve(contacts.capacity());  // so that RemoveContact never allocates
+}
+
+uint32_t PairStore::AddContact(uint32_t pair) {
+    uint32_t index;
+    if (!freeContacts_.empty()) {
+        index = freeContacts_.back();
+        freeContacts_.pop_back();
+        contacts[index] = {};
+        records[index] = {};
+    } else {
+        index = static_cast<uint32_t>(contacts.size());
+        ReserveContacts(1);
+        contacts.emplace_back();
+        records.emplace_back();
+        if (keepsMassOverrides_) massOverrides.emplace_back();
+    }
+    contacts[index].pair = pair;
+    pairs[pair].contact = index;
+    return index;
+}
+
+void PairStore::RemoveContact(uint32_t pair) {
+    const uint32_t index = std::exchange(pairs[pair].contact, kNone);
+    if (index == kNone) return;
+    FULCRUM_ASSERT(contacts[index].color.color == ColorSlot{}.color);
+    contacts[index].pair = kNone;
+    freeContacts_.push_back(index);
+}
+
 void PairStore::KeepMassOverrides(bool keep) {
     keepsMassOverrides_ = keep;
-    massOverrides.resize(keep ? pairs.size() : 0);
+    massOverrides.resize(keep ? contacts.size() : 0);
 }
 
 void PairStore::KeepReported(bool keep) {
@@ -93,6 +128,7 @@ void PairStore::KeepReported(bool keep) {
 
 uint32_t PairStore::AddMore(uint32_t of) {
     const uint32_t index = Allocate();
+    AddContact(index);
     Pair& pair = pairs[index];
     const Pair& first = pairs[of];
     pair.bodyA = first.bodyA;
@@ -104,7 +140,7 @@ uint32_t PairStore::AddMore(uint32_t of) {
     pair.fixedB = first.fixedB;
     pair.offset = first.offset;
     pair.surface = first.surface;
-    pair.reference = first.reference;
+    contacts[pair.contact].reference = contacts[first.contact].reference;
     pair.isMore = true;
     pair.more = first.more;
     pairs[of].more = index;
@@ -125,18 +161,19 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
 
 void PairStore::AddKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    uint32_t i = FirstPlace(key);
+    const uint32_t hash = HashOf(key);
+    uint32_t i = hash & mask;
     while (table_[i].index != kNone) i = (i + 1) & mask;
-    table_[i] = {key, index};
+    table_[i] = {hash, index};
 }
 
 void PairStore::RemoveKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    uint32_t hole = FirstPlace(key);
-    while (table_[hole].key != key || table_[hole].index != index) hole = (hole + 1) & mask;
+    uint32_t hole = HashOf(key) & mask;
+    while (table_[hole].index != index) hole = (hole + 1) & mask;
     // Backward-shift deletion: entries after the hole move up unless that would put them before their home slot.
     for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
-        if (((i - FirstPlace(table_[i].key)) & mask) >= ((i - hole) & mask)) {
+        if (((i - table_[i].hash) & mask) >= ((i - hole) & mask)) {
             table_[hole] = table_[i];
             hole = i;
         }
@@ -168,6 +205,7 @@ void PairStore::Unlink(uint32_t index) {
 
 void PairStore::Remove(uint32_t index) {
     active.Erase(index);
+    RemoveContact(index);
     if (keepsReported_ && reported[index].isOn) ended.push_back(reported[index]);
     if (pairs[index].isMore) {
         pairs[index].exists = false;
@@ -182,10 +220,10 @@ void PairStore::Remove(uint32_t index) {
 }
 
 size_t HeapBytes(const PairStore& store) {
-    const auto& [pairs, records, massOverrides, reported, ended, loads, loadVersion, active, table, free, links, heads,
-                 size, keepsMassOverrides, keepsReported] = store;
-    return HeapBytes(pairs, records, massOverrides, reported, ended, loads, loadVersion, active, table, free, links,
-                     heads, size, keepsMassOverrides, keepsReported);
+    const auto& [pairs, contacts, records, massOverrides, reported, ended, loads, loadVersion, active, table, free,
+                 freeContacts, links, heads, size, keepsMassOverrides, keepsReported] = store;
+    return HeapBytes(pairs, contacts, records, massOverrides, reported, ended, loads, loadVersion, active, table, free,
+                     freeContacts, links, heads, size, keepsMassOverrides, keepsReported);
 }
 
 }  // namespace fulcrum

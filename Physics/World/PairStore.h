@@ -1,6 +1,7 @@
-// Pairs of colliders with overlapping fat bounds, and their manifolds; a pair exists as long as the bounds overlap.
-// Pairs have stable indices, by which pairs, records and colors refer to each other. A pair is active while one of its
-// bodies is awake.
+// Pairs of colliders with overlapping fat bounds, and their contacts. A pair exists as long as the bounds overlap, its
+// contact as long as its shapes are so near that it has points: most pairs of a scene in motion have none. Both have
+// stable indices; records and colors refer to contacts. The index of a contact depends on the threads, so no result may
+// depend on it. A pair is active while one of its bodies is awake.
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
@@ -18,13 +19,14 @@
 namespace fulcrum {
 
 struct alignas(64) Pair {
-    // First cache line: all data read of a pair that keeps its manifold.
     uint32_t bodyA = 0, bodyB = 0;  // A is dynamic, B any
     uint32_t colliderA = 0, colliderB = 0;
     const ConvexShape* shapeA = nullptr;
     const Shape* shapeB = nullptr;  // convex, a plane or a surface
-    RelativePose reference;         // pose of shape B in shape A when the manifold was found
-    uint8_t pointCount = 0;         // of the manifold found at `reference`; also of the record, unless onSeam
+    PairCache cache;
+    uint32_t contact = ~0u;  // index of its contact; kNone if it has none: no points, and B is no surface
+    uint32_t more = ~0u;     // for surfaces: index of the next manifold of these two colliders
+    uint8_t pointCount = 0;  // of the manifold; also of the record, unless onSeam
     bool exists : 1 = false;
     bool fixedB : 1 = false;    // B's body is immovable: static or kinematic
     bool offset : 1 = false;    // a shape is not at its body's center frame (child of a compound)
@@ -33,14 +35,18 @@ struct alignas(64) Pair {
     bool onSeam : 1 = false;    // its record has no points, since the contact is a ghost collision at a seam
     bool isMore = false;        // for surfaces: an additional manifold of another pair
     uint8_t material = 0;       // for surfaces: index into the palette
-    // Second line.
-    PairCache cache;
+};
+static_assert(sizeof(Pair) == 64);
+
+// What a pair has besides its record while it has points; always if B is a surface.
+struct alignas(64) PairContact {
+    RelativePose reference;  // pose of shape B in shape A when the manifold was found
     uint32_t features[Manifold::kMaxPoints] = {0, 0, 0, 0};
     ColorSlot color;
-    uint32_t more = ~0u;    // for surfaces: index of the next manifold of these two colliders
     uint32_t triangle = 0;  // for surfaces: the triangle of the deepest point
+    uint32_t pair = ~0u;    // its index; kNone if unused
 };
-static_assert(sizeof(Pair) == 128);
+static_assert(sizeof(PairContact) == 64);
 
 // The reported state of a pair for contact events.
 struct ReportedContact {
@@ -55,15 +61,16 @@ struct ReportedContact {
 class PairStore {
 public:
     std::vector<Pair> pairs;
-    std::vector<ContactRecord> records;  // same index
-    // Same index, used for records with kMassOverride; empty without a contact listener, which sets them.
+    std::vector<PairContact> contacts;
+    std::vector<ContactRecord> records;  // by contact
+    // By contact, used for records with kMassOverride; empty without a contact listener, which sets them.
     std::vector<MassOverride> massOverrides;
     void KeepMassOverrides(bool keep);
-    // Same index, for a pair's first manifold; empty without contact events. Kept while bodies sleep.
+    // By pair, for its first manifold; empty without contact events. Kept while bodies sleep.
     std::vector<ReportedContact> reported;
     std::vector<ReportedContact> ended;  // for pairs removed since the last events
     void KeepReported(bool keep);
-    std::vector<LoadLevel> loads;  // same index
+    std::vector<LoadLevel> loads;  // by pair: kept while it has no contact
     uint64_t loadVersion = 1;      // incremented when a load level changes, also of joints
     IndexSet active;
 
@@ -74,8 +81,17 @@ public:
     // So many pairs can be added without moving the others.
     bool HasRoomFor(size_t more) const { return more <= free_.size() + (pairs.capacity() - pairs.size()); }
     void Reserve(size_t more);
-    // Adds a manifold to the pair `of`, between the same shapes and bodies. Not found by Find, and not active.
+    // Adds a manifold to the pair `of`, between the same shapes and bodies, with a contact. Not found by Find, and not
+    // active.
     uint32_t AddMore(uint32_t of);
+    // Gives a pair without a contact one, and a record, without material; returns its index.
+    uint32_t AddContact(uint32_t pair);
+    // So many can be added without moving the others.
+    void ReserveContacts(size_t more);
+    void RemoveContact(uint32_t pair);  // must not be colored; nothing if it has none
+    const ContactRecord& RecordOf(const Pair& pair) const { return records[pair.contact]; }
+    ContactRecord& RecordOf(const Pair& pair) { return records[pair.contact]; }
+    const Pair& PairOf(uint32_t contact) const { return pairs[contacts[contact].pair]; }
     // Calls visit(pair) for all pairs of a collider, active or not, except additional manifolds; the visitor may remove
     // it.
     template <class Visitor>
@@ -87,7 +103,8 @@ public:
             index = next;
         }
     }
-    void Remove(uint32_t index);  // must not be colored; its additional manifolds must be removed separately
+    // With its contact. Must not be colored; its additional manifolds must be removed separately.
+    void Remove(uint32_t index);
     friend size_t HeapBytes(const PairStore& store);
 
 private:
@@ -105,18 +122,20 @@ private:
     void Unlink(uint32_t index);
 
     uint32_t Allocate();
-    uint32_t FirstPlace(uint64_t key) const;
+    static uint32_t HashOf(uint64_t key);
     void Grow();
     void AddKey(uint64_t key, uint32_t index);     // inserts into the table, which must have space
     void RemoveKey(uint64_t key, uint32_t index);  // removes from the table, which must contain it
 
-    // Open addressing with linear probing; at most half full. Its order does not influence results.
+    // Open addressing with linear probing; at most half full. Its order does not influence results. Keys are those of
+    // the pairs.
     struct Entry {
-        uint64_t key;
+        uint32_t hash;
         uint32_t index = kNone;
     };
     std::vector<Entry> table_;
     std::vector<uint32_t> free_;
+    std::vector<uint32_t> freeContacts_;
     std::vector<Links> links_;     // by pair
     std::vector<uint32_t> heads_;  // by collider
     uint32_t size_ = 0;

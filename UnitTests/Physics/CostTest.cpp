@@ -86,6 +86,27 @@ TEST(Cost, ARestingBoxTakesAtMost1635Bytes) {
     EXPECT_LE(static_cast<double>(world.System().MemoryUsed()) / 1000, 1635.0);
 }
 
+// Of a pair whose bounds overlap, but not its shapes: 64 bytes, in lists of its colliders (16), its entry in a hash
+// table that is at least a quarter full (8), its load (4), index lists (9), and room for an eighth more.
+TEST(Cost, APairWithoutContactTakesAtMost144Bytes) {
+    constexpr int kCount = 20;
+    SystemSettings settings = NoSleep();
+    settings.gravity = Vector3::Zero();
+    const auto memoryOf = [&](double distance) {
+        TestWorld world(settings);
+        for (int i = 0; i < kCount * kCount; ++i)
+            world.Add({.shape = SphereOf(0.5f), .position = {i % kCount * distance, 0, i / kCount * distance}});
+        world.Steps(10);
+        EXPECT_EQ(world.Report().contacts, 0u);
+        return std::pair(static_cast<double>(world.System().MemoryUsed()), world.Report().pairs);
+    };
+    const auto [far, none] = memoryOf(3);
+    const auto [near, pairs] = memoryOf(1.06);  // bounds reach 5 cm farther, contacts 2
+    EXPECT_EQ(none, 0u);
+    EXPECT_GE(pairs, 2u * kCount * (kCount - 1));
+    EXPECT_LE((near - far) / pairs, 144.0);
+}
+
 // What goes with a world but for its shapes: joints, sensors, bodies that are cast along their ways, events, several
 // threads.
 TEST(Cost, MemoryUsedIsWhatIsAllocated) {

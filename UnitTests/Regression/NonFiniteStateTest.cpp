@@ -108,7 +108,7 @@ Pair* ContactOf(Scene& s, int n, ContactRecord** record = nullptr) {
         Pair& pair = s.State().pairs.pairs[index];
         if (!pair.touching || (pair.bodyA != s.spoiled.index && pair.bodyB != s.spoiled.index) || n-- != 0) return;
         found = &pair;
-        if (record) *record = &s.State().pairs.records[index];
+        if (record) *record = &s.State().pairs.RecordOf(pair);
     });
     return found;
 }
@@ -124,7 +124,7 @@ std::vector<Place> PlacesOfContacts() {
         });
         places.AddRun(name + " reference", 7, [n](Scene& s) {
             Pair* pair = ContactOf(s, n);
-            return pair ? pair->reference.position.data() : nullptr;
+            return pair ? s.State().pairs.contacts[pair->contact].reference.position.data() : nullptr;
         });
         places.AddRun(name + " cache", 3, [n](Scene& s) {
             Pair* pair = ContactOf(s, n);

@@ -487,6 +487,9 @@ TEST(HashState, ChangesWithAllThatMatters) {
     JointInterface& joints = world.System().Joints();
     const WorldState& state = WorldOf(world.System());
     WorldState& inside = WorldOf(world.System());
+    const auto recordOfA = [&]() -> ContactRecord& {
+        return inside.pairs.RecordOf(state.pairs.pairs[state.pairs.Find(0, a.index)]);
+    };
     const std::pair<const char*, std::function<void()>> changes[] = {
         {"velocity",
          [&] {
@@ -518,8 +521,8 @@ TEST(HashState, ChangesWithAllThatMatters) {
              EXPECT_TRUE(world.System().SetSettings(settings));
          }},
         {"slowness", [&] { inside.bodies.dynamics[a.index].slowSeconds += 0.01f; }},
-        {"impulse", [&] { inside.pairs.records[state.pairs.Find(0, a.index)].impulse[0] *= 1.001f; }},
-        {"friction impulse", [&] { inside.pairs.records[state.pairs.Find(0, a.index)].frictionImpulse[0] += 1; }},
+        {"impulse", [&] { recordOfA().impulse[0] *= 1.001f; }},
+        {"friction impulse", [&] { recordOfA().frictionImpulse[0] += 1; }},
         {"load", [&] { inside.pairs.loads[state.pairs.Find(0, a.index)].steps += 1; }},
         {"fat bounds", [&] { inside.colliders.colliders[a.index].fat.upper[0] += 1; }},
         {"remainder", [&] { inside.bodies.remainders[a.index].value[0] += 1e-12; }},
