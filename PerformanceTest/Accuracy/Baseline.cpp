@@ -27,9 +27,21 @@ std::string LineOf(const RunRecord& run) {
     std::string line = Json(run.setting.Key()).dump() + ": {\"errors\": {";
     for (const NamedValue& error : run.errors)
         line += (&error == run.errors.data() ? "" : ", ") + Json(error.name).dump() + ": " + Digits(error.value);
-    line += "}";
+    line += "}, \"traversals\": " + Digits(run.traversals);
     if (!run.failedGates.empty()) line += ", \"failed_gates\": " + Json(run.failedGates).dump();
     return line + "}";
+}
+
+// The work of a run against that of the baseline.
+void CompareCost(const RunRecord& run, const std::string& name, const Json& before, Comparison& comparison) {
+    const Json& was = before.at("traversals");
+    const double from = was.is_null() ? kNaN : was.get<double>(), to = run.traversals;
+    if (from == 0 && to == 0) return;
+    const double ratio = to / from;
+    if (std::isfinite(ratio) && ratio > 0) comparison.costs.push_back({run.scene + ", " + run.setting.Key(), ratio});
+    const std::string change = name + "traversals per second " + Digits(from) + " -> " + Digits(to);
+    if (!(ratio <= 1 + kDearer)) comparison.worse.push_back(change);
+    else if (ratio < 1 - kDearer) comparison.better.push_back(change);
 }
 
 // One run against that of the baseline.
@@ -39,6 +51,7 @@ void CompareRun(const RunRecord& run, const Json& before, Comparison& comparison
     for (const std::string& gate : run.failedGates)
         if (std::find(gates.begin(), gates.end(), Json(gate)) == gates.end())
             comparison.worse.push_back(name + "fails " + gate);
+    CompareCost(run, name, before, comparison);
     const Json& errors = before.at("errors");
     std::set<std::string> found;
     for (const NamedValue& error : run.errors) {

@@ -13,8 +13,9 @@ struct LabOptions {
     std::vector<const LabScene*> scenes;
     std::vector<Setting> settings;  // in place of the grid; empty: the grid
     bool isQuick = false;
-    bool isTimedOnce = false;  // else costs are medians of five runs, unless that takes too long
-    int threads = 1;           // runs at a time; the engine of each has one thread
+    bool comparesTargets = false;  // the grid is TargetGrid
+    bool isTimedOnce = false;      // else costs are medians of five runs, unless that takes too long
+    int threads = 1;               // runs at a time; the engine of each has one thread
     bool resumes = false;
     std::filesystem::path folder;  // runs.jsonl is in it; created
     bool showsProgress = true;     // on stderr

@@ -12,6 +12,8 @@
 
 namespace fulcrum::accuracy {
 
+class LabRecorder;
+
 struct NamedValue {
     std::string name;
     double value;
@@ -21,10 +23,12 @@ struct NamedValue {
 struct Work {
     double seconds = 0;           // wall clock, of the steps only
     double simulatedSeconds = 0;  // of all worlds of the run
-    // Sum over the steps of (contacts + joints) x substeps x (velocity + position iterations), with the contacts and
-    // joints of the step's report and the system's own effort: an island under load that gets more substeps counts as
-    // others do. The same on every machine.
+    // Sum over the steps of (contacts + joints) x substeps x (velocity + position iterations), by the reports of the
+    // steps. An island with more effort than the system's counts with its own, and has that share of the constraints
+    // which it has of the bodies. The same on every machine.
     double traversals = 0;
+    // How often the greatest effort of a world rose after it had fallen, in the second half of the world's time.
+    int effortReturns = 0;
     uint64_t hash = 0;  // of the last poses of all worlds
 };
 
@@ -51,6 +55,7 @@ public:
     int Steps(double seconds) const;
 
     const Setting& setting;
+    LabRecorder* recorder = nullptr;  // not owned; of the first world
     double parameter;
     bool isQuick;
     Random random;

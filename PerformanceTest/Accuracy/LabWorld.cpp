@@ -1,5 +1,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 
+#include <Fulcrum/PerformanceTest/Accuracy/LabRecorder.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -30,6 +32,7 @@ LabWorld::LabWorld(LabRun& run, SystemSettings settings) : run_(run) {
 }
 
 LabWorld::~LabWorld() {
+    if (run_.recorder) run_.recorder->End(*system_, time_);
     bool isInside = true;
     for (const Built& built : dynamic_) {
         if (!Bodies().Exists(built.id)) continue;
@@ -42,6 +45,8 @@ LabWorld::~LabWorld() {
     run_.work.seconds += work_.seconds;
     run_.work.simulatedSeconds += work_.simulatedSeconds;
     run_.work.traversals += work_.traversals;
+    run_.work.effortReturns +=
+        static_cast<int>(std::ranges::count_if(returns_, [&](double time) { return time > 0.5 * time_; }));
     run_.work.hash = run_.work.hash * 31 + system_->HashPoses();
 }
 
@@ -59,6 +64,7 @@ BodyId LabWorld::AddFloor(float friction, float restitution, double halfWidth, c
 }
 
 void LabWorld::Step(double dt) {
+    if (run_.recorder) run_.recorder->AddFrame(*system_, time_);
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     (void)system_->Update(dt).Value();
@@ -67,9 +73,20 @@ void LabWorld::Step(double dt) {
     time_ += dt;
     const StepReport& report = system_->Report();
     const SolverSettings& solver = system_->Settings().solver;
-    work_.traversals += static_cast<double>(report.contacts + report.joints) * solver.substeps *
-                        (solver.velocityIterations + solver.positionIterations);
+    const double passes = solver.substeps * (solver.velocityIterations + solver.positionIterations);
+    double more = 0;  // passes over bodies beyond the system's
+    system_->VisitEfforts([&](const IslandEffortReport& effort) {
+        const int own = effort.substeps * (effort.velocityIterations + effort.positionIterations);
+        more += effort.bodies * (own - passes);
+    });
+    work_.traversals +=
+        static_cast<double>(report.contacts + report.joints) * (passes + more / std::max(1u, report.awakeBodies));
     isFinite_ &= report.frozenBodies == 0;
+    if (dt == 0) return;  // such a step solves nothing
+    const int effort = report.mostEffort[0].substeps;
+    if (hasFallen_ && effort > effort_) returns_.push_back(time_);
+    hasFallen_ = effort < effort_ || (hasFallen_ && effort == effort_);
+    effort_ = effort;
 }
 
 double LabWorld::FastestBody() {

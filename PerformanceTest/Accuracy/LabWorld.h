@@ -68,6 +68,9 @@ private:
     std::vector<Built> dynamic_;
     double time_ = 0;
     Work work_;
+    int effort_ = 0;  // the most substeps of an island in the last step
+    bool hasFallen_ = false;
+    std::vector<double> returns_;  // s, when it rose after it had fallen
     bool isFinite_ = true;
 };
 

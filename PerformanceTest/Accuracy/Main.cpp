@@ -2,11 +2,13 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Advice.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Baseline.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Options.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Targets.h>
 #include <Fulcrum/Samples/Viewer/WholeFile.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -71,9 +73,29 @@ int Compare(const LabCommand& command, std::span<const RunRecord> runs) {
     const Comparison& comparison = compared.Value();
     for (const std::string& line : comparison.better) std::printf("better: %s\n", line.c_str());
     for (const std::string& line : comparison.worse) std::printf("worse: %s\n", line.c_str());
-    std::printf("errors: %zu worse, %zu better, %zu the same\n", comparison.worse.size(), comparison.better.size(),
+    std::printf("%zu worse, %zu better; errors: %zu the same\n", comparison.worse.size(), comparison.better.size(),
                 comparison.same);
+    double sum = 0;
+    const Comparison::CostRatio *most = nullptr, *least = nullptr;
+    for (const Comparison::CostRatio& cost : comparison.costs) {
+        sum += std::log(cost.ratio);
+        if (!most || cost.ratio > most->ratio) most = &cost;
+        if (!least || cost.ratio < least->ratio) least = &cost;
+    }
+    if (most)
+        std::printf("traversals over those of the baseline: %.4f (geometric mean); most %.4f, %s; least %.4f, %s\n",
+                    std::exp(sum / static_cast<double>(comparison.costs.size())), most->ratio, most->run.c_str(),
+                    least->ratio, least->run.c_str());
     return comparison.worse.empty() ? 0 : 1;
+}
+
+int ReportTargets(const LabCommand& command, std::span<const SceneRuns> scenes) {
+    const std::string table = TargetTable(scenes);
+    std::printf("%s", table.c_str());
+    if (!command.table.empty())
+        if (const Status written = WriteTables(table, command.table, "targets"); !written)
+            return Fail(written.GetError().message);
+    return 0;
 }
 
 int Run(const LabCommand& command) {
@@ -84,8 +106,13 @@ int Run(const LabCommand& command) {
             return Fail(saved.GetError().message);
     if (command.soaks) return ReportSoak(runs.Value());
     const int comparison = command.baseline.empty() ? 0 : Compare(command, runs.Value());
+    if (command.recordings.AreWanted())
+        if (const Status written = WriteRecordings(runs.Value(), command.recordings, command.lab.folder); !written)
+            return Fail(written.GetError().message);
+    FindRecordings(runs.Value(), command.lab.folder);
     const std::vector<SceneRuns> scenes = ByScene(std::move(runs.Value()));
     if (command.adviseError || command.adviseBudget) return Advise(command, scenes);
+    if (command.lab.comparesTargets) return ReportTargets(command, scenes);
     return std::max(Write(command, scenes), comparison);
 }
 

@@ -103,11 +103,22 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
     app.add_flag("--soak", command.soaks,
                  "10^6 steps of the scene soak at the default setting, with 1 thread, then with 2, and nothing else: "
                  "some minutes; exit status 1 where a gate fails");
+    app.add_flag(
+        "--recordings", command.recordings.isOfAll,
+        "record all runs to pages in DIR/recordings, which the dots of the report link to: about a megabyte each");
+    AddText(app, "--record", "record the runs with this setting, as hovering shows it: --record \"soft 1/60 4 1 1\"",
+            [&](const std::string& text) { command.recordings.setting = text; })
+        ->type_name("SETTING");
+    app.add_flag_function(
+        "--targets", [&](int64_t) { command.lab.comparesTargets = command.lab.isTimedOnce = true; },
+        "runs with AccuracyTargets against runs with fixed efforts, and nothing else: what an error costs either way, "
+        "to DIR/targets");
     AddText(app, "--commit", "what runs.json says of the version",
             [&](const std::string& text) { command.commit = text; });
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
     if (!parsed) return parsed.GetError();
     command.help = parsed.Value();
+    command.recordings.isQuick = command.lab.isQuick;
     if (command.soaks) {
         if (name != "all" || command.lab.isQuick || !command.baseline.empty() || !command.save.empty())
             return Error{ErrorCode::OutOfRange, "--soak is a run of its own: no --scene, --quick, --save, --baseline"};
@@ -117,6 +128,15 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
         command.lab.folder /= "soak";
     }
     if (const Status chosen = ChooseScenes(name, command.lab); !chosen) return chosen.GetError();
+    if (command.lab.comparesTargets) {
+        if (command.soaks || !command.baseline.empty() || !command.save.empty())
+            return Error{ErrorCode::OutOfRange, "--targets goes without --soak, --save and --baseline"};
+        command.lab.folder /= "targets";
+        // Where nothing is solved, and where thousands of bodies are at one point, efforts do not matter.
+        std::erase_if(command.lab.scenes, [](const LabScene* scene) {
+            return TargetGrid(scene->influences).empty() || scene->FullName() == "coincident.4096";
+        });
+    }
     return command;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Fulcrum/PerformanceTest/Accuracy/Lab.h>
+#include <Fulcrum/PerformanceTest/Accuracy/Recordings.h>
 
 #include <optional>
 #include <string>
@@ -13,7 +14,8 @@ struct LabCommand {
     LabOptions lab;
     std::filesystem::path table;           // a document to write the tables into; empty: none
     std::filesystem::path save, baseline;  // of errors, see Baseline.h; empty: none
-    bool soaks = false;                    // --soak: one long run, whose errors and gates are printed
+    RecordingOptions recordings;
+    bool soaks = false;  // --soak: one long run, whose errors and gates are printed
     std::string commit;
     std::optional<double> adviseError, adviseBudget;  // a part; ms a frame. One of both: the command advises
     std::string help;                                 // not empty: only help was requested

@@ -35,8 +35,9 @@ Status WriteReport(const nlohmann::ordered_json& runs, const std::filesystem::pa
 
 // Tables: accuracy scenes, extreme scenes, envelopes.
 std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& circumstances);
-// Replaces what is between the marks in the file. Error OutOfRange: there are no marks, or it cannot be written.
-Status WriteTables(const std::string& tables, const std::filesystem::path& path);
+// Replaces what is between the marks "accuracy NAME: begin" and "... end" in the file. Error OutOfRange: there are no
+// marks, or it cannot be written.
+Status WriteTables(const std::string& tables, const std::filesystem::path& path, const std::string& name = "lab");
 
 // "1.2k"; a dash for what is not finite.
 std::string ShortNumber(double value);

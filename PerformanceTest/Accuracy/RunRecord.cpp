@@ -115,6 +115,7 @@ RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, b
         simulated += run.work.simulatedSeconds;
     }
     record.traversals /= std::max(simulated, 1e-9);
+    record.effortReturns = runs[0].work.effortReturns;
     record.timedRuns = static_cast<int>(microseconds.size());
     record.microseconds = Median(std::move(microseconds));
     record.blewUp = !(record.Error() <= scene.blowUp);
@@ -131,6 +132,7 @@ Json ToJson(const RunRecord& record) {
     json["substeps"] = setting.solver.substeps;
     json["velocity_iterations"] = setting.solver.velocityIterations;
     json["position_iterations"] = setting.solver.positionIterations;
+    if (setting.family == Family::Target) json["target"] = setting.target;
     json["preset"] = setting.Preset();
     json["errors"] = ListJson(record.errors);
     json["self_error"] = NumberJson(record.selfError);
@@ -142,9 +144,11 @@ Json ToJson(const RunRecord& record) {
     json["seeds"] = record.seeds;
     json["hash"] = record.hash;
     json["traversals_per_second"] = NumberJson(record.traversals);
+    json["effort_returns"] = record.effortReturns;
     json["us_per_second"] = NumberJson(record.microseconds);
     json["cost_ratio"] = NumberJson(record.costRatio);
     json["timed_runs"] = record.timedRuns;
+    if (!record.recording.empty()) json["recording"] = record.recording;
     return json;
 }
 
@@ -163,6 +167,7 @@ Result<RunRecord> RecordFromJson(const Json& json) {
         solver.velocityIterations = json.at("velocity_iterations").get<int>();
         solver.positionIterations = json.at("position_iterations").get<int>();
         if (record.setting.family == Family::Baumgarte) solver.positionCorrection = PositionCorrection::Baumgarte;
+        if (record.setting.family == Family::Target) record.setting.target = json.at("target").get<float>();
         record.errors = ListOf(json.at("errors"));
         record.figures = ListOf(json.at("figures"));
         for (const Json& value : json.at("observed")) record.observed.push_back(NumberOf(value));
@@ -171,6 +176,7 @@ Result<RunRecord> RecordFromJson(const Json& json) {
         record.seeds = json.at("seeds").get<int>();
         record.hash = json.at("hash").get<uint64_t>();
         record.traversals = NumberOf(json.at("traversals_per_second"));
+        record.effortReturns = json.at("effort_returns").get<int>();
         record.microseconds = NumberOf(json.at("us_per_second"));
         record.timedRuns = json.at("timed_runs").get<int>();
         return record;

@@ -12,7 +12,7 @@
 
 namespace fulcrum::accuracy {
 
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct RunRecord {
@@ -25,10 +25,12 @@ struct RunRecord {
     int seeds = 1;
     uint64_t hash = 0;
     double traversals = 0;    // of constraints per simulated second
+    int effortReturns = 0;    // of the first seed, see Work
     double microseconds = 0;  // of work per simulated second: the median of so many runs
     int timedRuns = 0;
     double selfError = kNaN;  // from the finest setting, not from the closed form; AddSelfErrors fills it
     double costRatio = kNaN;  // to the default setting's; AddCostRatios fills it
+    std::string recording;    // the file, relative to the lab's folder; empty: none. FindRecordings fills it
 
     // The main error; NaN if the scene reported none.
     double Error() const { return errors.empty() ? kNaN : errors[0].value; }

@@ -1,6 +1,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Setting.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -48,7 +49,7 @@ SolverSettings Effort(int substeps, int velocityIterations, int positionIteratio
 }  // namespace
 
 const char* FamilyName(Family family) {
-    constexpr const char* kNames[kFamilies] = {"soft", "baumgarte", "libccd", "no_trees"};
+    constexpr const char* kNames[kFamilies] = {"soft", "baumgarte", "libccd", "no_trees", "fixed", "target"};
     return kNames[static_cast<int>(family)];
 }
 
@@ -57,6 +58,8 @@ SystemSettings Setting::System() const {
     settings.solver = solver;
     if (family == Family::Libccd) settings.narrowPhase = NarrowPhaseMethod::Libccd;
     if (family == Family::NoTrees) settings.exactJointLoad = std::numeric_limits<float>::infinity();
+    if (family == Family::Fixed) settings.accuracy.penetration = std::numeric_limits<float>::infinity();
+    if (family == Family::Target) settings.accuracy.penetration = settings.accuracy.jointError = target;
     return settings;
 }
 
@@ -66,7 +69,14 @@ double Setting::PassesPerSecond() const {
 
 std::string Setting::Key() const {
     return std::string(FamilyName(family)) + " 1/" + std::to_string(rate) + " " + std::to_string(solver.substeps) +
-           " " + std::to_string(solver.velocityIterations) + " " + std::to_string(solver.positionIterations);
+           " " + std::to_string(solver.velocityIterations) + " " + std::to_string(solver.positionIterations) +
+           (family == Family::Target ? " " + TargetText() : "");
+}
+
+std::string Setting::TargetText() const {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", static_cast<double>(target));
+    return text;
 }
 
 const char* Setting::Preset() const {
@@ -84,6 +94,9 @@ std::string Setting::Code() const {
     code += "};";
     if (family == Family::Libccd) code += " settings.narrowPhase = NarrowPhaseMethod::Libccd;";
     if (family == Family::NoTrees) code += " settings.exactJointLoad = std::numeric_limits<float>::infinity();";
+    if (family == Family::Fixed) code += " settings.accuracy.penetration = std::numeric_limits<float>::infinity();";
+    if (family == Family::Target)
+        code += " settings.accuracy = {.penetration = " + TargetText() + "f, .jointError = " + TargetText() + "f};";
     return code + " system->Update(1.0 / " + std::to_string(rate) + ");";
 }
 
@@ -96,6 +109,21 @@ std::vector<Setting> QuickGrid(const Influences& influences) {
     grid.Add({.family = Family::Libccd});
     grid.Add({.family = Family::NoTrees});
     return grid.Take();
+}
+
+std::vector<Setting> TargetGrid(const Influences& influences) {
+    std::vector<Setting> settings;
+    if (!influences.contacts && !influences.joints) return settings;
+    for (const int rate : {30, 60}) {
+        for (const int substeps : {1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 46, 64, 91, 128, 181})
+            settings.push_back({rate, Effort(substeps, 1, 1, Family::Fixed), Family::Fixed});
+        for (const int substeps : {1, 2, 4})
+            // A substep of the square root of the half: half of the target.
+            for (const float target :
+                 {0.4f, 0.2f, 0.1f, 0.05f, 0.025f, 0.012f, 0.006f, 0.003f, 0.0015f, 0.0008f, 0.0004f, 0.0002f, 0.0001f})
+                settings.push_back({rate, Effort(substeps, 1, 1, Family::Target), Family::Target, target});
+    }
+    return settings;
 }
 
 std::vector<Setting> FullGrid(const Influences& influences, bool isCoarse) {

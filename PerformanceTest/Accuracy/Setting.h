@@ -15,21 +15,27 @@ enum class Family : uint8_t {
     Baumgarte,  // hard rows, position passes
     Libccd,     // soft rows, contacts by libccd
     NoTrees,    // soft rows, joints under load are not solved as trees
+    Fixed,      // soft rows, every island with the system's effort: no AccuracyTarget
+    Target,     // soft rows, effort by an AccuracyTarget
 };
-inline constexpr int kFamilies = 4;
+inline constexpr int kFamilies = 6;
 const char* FamilyName(Family family);
 
 struct Setting {
     int rate = 60;  // time steps per second
     SolverSettings solver{};
     Family family = Family::Soft;
+    // Of the family Target: AccuracyTarget::penetration, and its jointError in m.
+    float target = 0;
 
     double Dt() const { return 1.0 / rate; }
     SystemSettings System() const;
     // Passes over a constraint per simulated second.
     double PassesPerSecond() const;
-    // "soft 1/60 4 1 1": family, dt, substeps, velocity iterations, position iterations. Names the setting in files.
+    // "soft 1/60 4 1 1": family, dt, substeps, velocity iterations, position iterations; "target 1/60 1 1 1 0.002": the
+    // target, too. Names the setting in files.
     std::string Key() const;
+    std::string TargetText() const;  // "0.002"
     // "fast", "balanced" (the default), "accurate", "reference"; empty for others.
     const char* Preset() const;
     // The lines that make a program run with it.
@@ -45,6 +51,9 @@ struct Influences {
 // The presets, then steps of 1/30 to 1/240 s at the default effort, ten iterations, and one or two of each other
 // family: about 12.
 std::vector<Setting> QuickGrid(const Influences& influences);
+// Fixed efforts of 1 to 181 substeps against targets of 40 % to 0.01 % that start from 1, 2 or 4 substeps, at steps of
+// 1/30 and 1/60 s.
+std::vector<Setting> TargetGrid(const Influences& influences);
 // dt 1/30 .. 1/960 x substeps 1 .. 16 x velocity iterations 1 .. 32 x position iterations 0 .. 4 of Soft and Baumgarte,
 // a part of it for the others, and the presets. Cheap ones first. A coarse one leaves out 1/480 and 1/960 s, and every
 // other number of substeps and iterations: a twentieth of the work.

@@ -12,8 +12,6 @@
 namespace fulcrum::accuracy {
 namespace {
 
-constexpr const char* kBegin = "<!-- accuracy lab: begin -->\n";
-constexpr const char* kEnd = "<!-- accuracy lab: end -->";
 constexpr const char* kPresets[] = {"fast", "balanced", "accurate", "reference"};
 
 // Where nothing is solved all presets are the same.
@@ -111,17 +109,18 @@ std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& cir
            "\n<details>\n<summary>Envelopes</summary>\n\n" + EnvelopeTable(scenes) + "\n</details>\n";
 }
 
-Status WriteTables(const std::string& tables, const std::filesystem::path& path) {
+Status WriteTables(const std::string& tables, const std::filesystem::path& path, const std::string& name) {
+    const std::string beginMark = "<!-- accuracy " + name + ": begin -->",
+                      endMark = "<!-- accuracy " + name + ": end -->";
     std::ifstream file(path, std::ios::binary);
     std::ostringstream content;
     content << file.rdbuf();
     file.close();
     const std::string text = content.str();
-    const size_t begin = text.find(kBegin), end = text.find(kEnd);
+    const size_t begin = text.find(beginMark + "\n"), end = text.find(endMark);
     if (begin == std::string::npos || end == std::string::npos || end < begin)
-        return Error{ErrorCode::OutOfRange,
-                     path.string() + " has no lines " + std::string(kBegin, 28) + " and " + kEnd};
-    const size_t first = begin + std::char_traits<char>::length(kBegin);
+        return Error{ErrorCode::OutOfRange, path.string() + " has no lines " + beginMark + " and " + endMark};
+    const size_t first = begin + beginMark.size() + 1;
     const std::string_view whole = text;
     return WriteWholeFile(path, {whole.substr(0, first), "\n", tables, "\n", whole.substr(end)});
 }

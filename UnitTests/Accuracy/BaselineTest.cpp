@@ -13,6 +13,7 @@ RunRecord Make(const char* scene, int rate, double error) {
     run.scene = scene;
     run.setting.rate = rate;
     run.errors = {{"position", error}, {"energy", 0.25}};
+    run.traversals = 1000;
     return run;
 }
 
@@ -55,6 +56,22 @@ TEST_F(Baseline, TellsWorseFromBetterByTheDigitsThatItKeeps) {
     EXPECT_EQ(both.better[0], "incline, soft 1/60 4 1 1: position 0.001 -> 0.0001");
 }
 
+TEST_F(Baseline, FailsWhereARunTakesATenthMoreWork) {
+    EXPECT_EQ(After([](auto& runs) { runs[0].traversals = 1099; }).worse.size(), 0u);
+    const Comparison dearer = After([](auto& runs) { runs[0].traversals = 1500; });
+    ASSERT_EQ(dearer.worse.size(), 1u);
+    EXPECT_EQ(dearer.worse[0], "incline, soft 1/30 4 1 1: traversals per second 1000 -> 1500");
+    ASSERT_EQ(dearer.costs.size(), 3u);
+    EXPECT_EQ(dearer.costs[0].ratio, 1.5);
+    EXPECT_EQ(dearer.costs[1].ratio, 1);
+    EXPECT_EQ(After([](auto& runs) { runs[0].traversals = 500; }).better.size(), 1u);
+    EXPECT_EQ(After([](auto& runs) { runs[0].traversals = kNaN; }).worse.size(), 1u);
+    // Where nothing is solved there is no ratio.
+    runs_[2].traversals = 0;
+    EXPECT_EQ(After([](auto&) {}).costs.size(), 2u);
+    EXPECT_EQ(After([](auto& runs) { runs[2].traversals = 10; }).worse.size(), 1u);
+}
+
 TEST_F(Baseline, FailsWhereARunBlowsUpFailsAGateOrIsMissing) {
     EXPECT_EQ(After([](auto& runs) { runs[0].errors[0].value = kNaN; }).worse.size(), 1u);
     EXPECT_EQ(After([](auto& runs) { runs[0].failedGates.push_back("finite poses"); }).worse.size(), 1u);
@@ -71,7 +88,7 @@ TEST_F(Baseline, FailsWhereARunBlowsUpFailsAGateOrIsMissing) {
 
 TEST_F(Baseline, RefusesWhatIsNone) {
     for (const char* text : {"", "{}", "[1]", "{\"fulcrum_accuracy_baseline\": 99, \"quick\": true, \"scenes\": {}}",
-                             "{\"fulcrum_accuracy_baseline\": 1, \"quick\": true, \"scenes\": {\"rope\": 3}}"})
+                             "{\"fulcrum_accuracy_baseline\": 2, \"quick\": true, \"scenes\": {\"rope\": 3}}"})
         EXPECT_FALSE(CompareWithBaseline(text, runs_, true)) << text;
     EXPECT_FALSE(CompareWithBaseline(BaselineOf(runs_, false), runs_, true));
     EXPECT_TRUE(CompareWithBaseline(BaselineOf({}, true), {}, true));

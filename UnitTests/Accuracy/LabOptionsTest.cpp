@@ -37,6 +37,26 @@ TEST(LabOptions, SoakIsOneLongRunOfItsOwn) {
     EXPECT_FALSE(ParseLabCommand({"--soak", "--baseline", "x.json"}));
 }
 
+TEST(LabOptions, TargetsAreComparedWhereSomethingIsSolved) {
+    const auto command = ParseLabCommand({"--targets", "--quick", "--out", "here"});
+    ASSERT_TRUE(command);
+    EXPECT_TRUE(command.Value().lab.comparesTargets && command.Value().lab.isQuick);
+    EXPECT_EQ(command.Value().lab.folder, "here/targets");
+    for (const LabScene* scene : command.Value().lab.scenes) EXPECT_NE(scene->FullName(), "projectile");
+    EXPECT_GT(command.Value().lab.scenes.size(), 40u);
+    EXPECT_FALSE(ParseLabCommand({"--targets", "--soak"}));
+    EXPECT_FALSE(ParseLabCommand({"--targets", "--save", "x.json"}));
+}
+
+TEST(LabOptions, RecordsOneSettingOrAll) {
+    EXPECT_FALSE(ParseLabCommand({"--quick"}).Value().recordings.AreWanted());
+    const auto one = ParseLabCommand({"--quick", "--record", "soft 1/60 4 1 1"});
+    ASSERT_TRUE(one);
+    EXPECT_EQ(one.Value().recordings.setting, "soft 1/60 4 1 1");
+    EXPECT_TRUE(one.Value().recordings.isQuick && one.Value().recordings.AreWanted());
+    EXPECT_TRUE(ParseLabCommand({"--recordings"}).Value().recordings.isOfAll);
+}
+
 TEST(LabOptions, AnUnknownSceneIsAnsweredWithTheNearest) {
     const auto command = ParseLabCommand({"--scene", "inclin"});
     ASSERT_FALSE(command);

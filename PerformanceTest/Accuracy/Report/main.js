@@ -3,8 +3,9 @@ import * as Plot from '@observablehq/plot';
 import { drawnOf, labelsOf } from './points.mjs';
 
 const data = JSON.parse(document.getElementById('runs').textContent);
-// report.html?scenes=tower,pendulum: these plots alone, for pictures.
-const chosen = new URLSearchParams(location.search).get('scenes')?.split(',');
+// report.html?scenes=tower,pendulum&cost=traversals_per_second: these plots alone, for pictures.
+const asked = new URLSearchParams(location.search), chosen = asked.get('scenes')?.split(',');
+if (asked.has('cost')) document.getElementById('cost').value = asked.get('cost');
 if (chosen) {
   data.scenes = data.scenes.filter(({ name }) => chosen.includes(name));
   document.body.classList.add('picture');
@@ -14,7 +15,9 @@ const FAMILIES = [
   { name: 'baumgarte', label: 'Baumgarte', color: '#d55e00' },
   { name: 'libccd', label: 'contacts by libccd', color: '#009e73' },
   { name: 'no_trees', label: 'no trees of joints', color: '#b0499b' },
-];
+  { name: 'fixed', label: 'fixed effort', color: '#4a5563' },
+  { name: 'target', label: 'AccuracyTarget', color: '#c8102e' },
+].filter(({ name }) => data.scenes.some(({ runs }) => runs.some(({ family }) => family === name)));
 // Where the labels of presets stand, so that those of runs side by side do not cover each other.
 const PRESETS = {
   fast: { text: () => 'fast', textAnchor: 'end', dx: -10 },
@@ -62,6 +65,8 @@ function draw(card, scene) {
       Plot.dot(points.filter(({ preset }) => preset), { ...at, r: 6.5, stroke: '#1d2733', strokeWidth: 1.4, className: 'presets' }),
       Object.entries(PRESETS).map(([name, place]) => Plot.text(points.filter(({ preset }) => preset === name), { ...at, ...place, fill: '#1d2733', stroke: 'white', strokeWidth: 3 })),
       Plot.tip(points, Plot.pointer({ ...at, title: 'title', maxRadius: 30, lineHeight: 1.3, className: 'hover' })),
+      // Above what hovering shows, which a click makes stay.
+      Plot.dot(points.filter(({ recording }) => recording), { ...at, r: 6.5, fill: 'transparent', href: 'recording', target: '_blank', className: 'recordings' }),
     ],
     // Kinds of points, not families, have symbols.
     symbol: { domain: ['run', 'blew up', 'exact'], range: ['circle', 'times', 'triangle'] },

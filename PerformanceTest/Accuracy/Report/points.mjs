@@ -19,6 +19,7 @@ function titleOf(run, metric) {
     `${number(run.traversals_per_second)} traversals a second`,
   ];
   if (run.failed_gates.length > 0) lines.push(`fails: ${run.failed_gates.join('; ')}`);
+  lines.push(run.recording ? 'click: plays its recording' : `to record it: --record "${run.setting}"`);
   return lines.join('\n');
 }
 
@@ -61,6 +62,7 @@ export function drawnOf(scene, { cost, metric, peers = [] }) {
       kind,
       family: run.family,
       preset: run.preset,
+      recording: run.recording ?? null,
       title: titleOf(run, metric),
     };
   });

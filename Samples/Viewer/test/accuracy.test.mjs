@@ -1,5 +1,5 @@
 // The report of the accuracy lab: a plot a scene, its curves, what hovering says; and where its points are.
-// FULCRUM_RECORDING's folder has accuracy/report.html, of `./fulcrum accuracy --quick --scene incline`.
+// FULCRUM_RECORDING's folder has accuracy/report.html, of `./fulcrum accuracy --quick --scene incline --record "soft 1/60 4 1 1"`.
 import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -10,7 +10,7 @@ import { launch } from './browser.mjs';
 import { html } from './recording.mjs';
 
 const report = join(dirname(html), 'accuracy', 'report.html');
-if (!existsSync(report)) throw new Error(`${report} is missing: run ./fulcrum accuracy --quick --scene incline`);
+if (!existsSync(report)) throw new Error(`${report} is missing: run ./fulcrum accuracy --quick --scene incline --record "soft 1/60 4 1 1"`);
 
 let browser, page;
 const complaints = [], requests = [];
@@ -50,6 +50,27 @@ test('hovering a run names its setting', async () => {
   const tip = page.locator('[id="incline.slide"] .hover');
   await tip.locator('text').first().waitFor();
   assert.match((await tip.textContent()).replaceAll('\u200b', '\n'), /dt 1\/60 s, 4 substeps\s+1 velocity, 1 position/);
+});
+
+test('a run that was recorded is played by a click, others say how to record them', async () => {
+  const tip = page.locator('[id="incline.slide"] .hover');
+  const hover = async (nth) => {
+    const dot = await page.locator('[id="incline.slide"] .presets circle').nth(nth).boundingBox();
+    await page.mouse.move(dot.x + dot.width / 2, dot.y + dot.height / 2);
+    await tip.locator('text').first().waitFor();
+    return (await tip.textContent()).replaceAll('\u200b', '\n');
+  };
+  const titles = [];
+  for (const nth of [0, 1, 2, 3]) titles.push(await hover(nth));
+  assert.ok(titles.some((title) => title.includes('click: plays its recording')), titles.join());
+  assert.ok(titles.some((title) => /to record it: --record "soft 1\/60 \d+ 1 1"/.test(title)), titles.join());
+  const links = plotOf('incline.slide').locator('.recordings a');
+  assert.equal(await links.count(), 1);
+  const [played] = await Promise.all([page.waitForEvent('popup'), links.click()]);
+  await played.waitForFunction(() => window.fulcrum, null, { timeout: 120000 });
+  assert.match(played.url(), /accuracy\/recordings\/incline\.slide_soft_1-60_4_1_1\.html$/);
+  assert.match(await played.textContent('body'), /incline\.slide/);
+  await played.close();
 });
 
 test('other errors, other costs', async () => {
