@@ -3,6 +3,7 @@
 // body penetrates another before a contact exists. It covers all directions, since bodies that are hit are deflected
 // and rotated.
 #include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Math/ForceInline.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -143,8 +144,9 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     return LookAtContact(stores, index, view.bInA, findings);
 }
 
-// Prefetches data of the next pairs while this one is collided.
-void PrefetchAhead(const CollideStores& stores, uint32_t index) {
+// Prefetches data of the next pairs while this one is collided. Inlined at once: GCC drops calls of functions that do
+// nothing else.
+FULCRUM_FORCE_INLINE void PrefetchAhead(const CollideStores& stores, uint32_t index) {
     constexpr uint32_t kAhead = 6;
     if (index + kAhead >= stores.pairs.pairs.size()) return;
     const Pair& pair = stores.pairs.pairs[index + kAhead];
@@ -152,6 +154,10 @@ void PrefetchAhead(const CollideStores& stores, uint32_t index) {
         __builtin_prefetch(&stores.bodies.poses[body]);
         __builtin_prefetch(&stores.bodies.states[body]);
     }
+    if (pair.contact == PairStore::kNone) return;
+    __builtin_prefetch(&stores.pairs.contacts[pair.contact]);
+    const char* record = reinterpret_cast<const char*>(&stores.pairs.records[pair.contact]);
+    for (size_t line = 0; line < sizeof(ContactRecord); line += 64) __builtin_prefetch(record + line);
 }
 
 void CollideAllActive(const CollideStores& stores, std::vector<PairChange>& changes, const StepWorkers& workers) {
