@@ -116,6 +116,21 @@ private:
     Result<Outcome> Play(const Program& program, std::vector<std::byte>* recorded) {
         ++replays_;
         if (settings_.progress) settings_.progress(replays_, program.size());
+        const CallRecorder::Sink none;
+        if (settings_.isolation) {
+            IsolatedRun run = settings_.isolation(
+                [&](const CallRecorder::Sink& send) { (void)bool(PlayHere(program, recorded ? send : none)); });
+            if (recorded) *recorded = std::move(run.sent);
+            return Outcome{run.hasDied, program};
+        }
+        if (!recorded) return PlayHere(program, none);
+        return PlayHere(program, [recorded](std::span<const std::byte> bytes) {
+            recorded->insert(recorded->end(), bytes.begin(), bytes.end());
+            return true;
+        });
+    }
+
+    Result<Outcome> PlayHere(const Program& program, const CallRecorder::Sink& record) {
         std::vector<CallPlayer> players;
         std::vector<PhysicsSystem*> worlds;
         players.reserve(settings_.jobs.size());
@@ -125,14 +140,8 @@ private:
             worlds.push_back(&players.back().System());
         }
         std::unique_ptr<CallRecorder> recorder;
-        if (recorded) {
-            auto created = CallRecorder::Create(
-                *worlds[0],
-                [recorded](std::span<const std::byte> bytes) {
-                    recorded->insert(recorded->end(), bytes.begin(), bytes.end());
-                    return true;
-                },
-                settings_.sources.customShapes);
+        if (record) {
+            auto created = CallRecorder::Create(*worlds[0], record, settings_.sources.customShapes);
             if (!created) return created.GetError();
             recorder = std::move(created.Value());
         }
@@ -147,7 +156,7 @@ private:
                 isDone |= played.Value().isDone;
             }
             if (isDone) outcome.used.push_back(call);
-            if (call.isStep && failure_(worlds)) {
+            if (call.isStep && failure_ && failure_(worlds)) {
                 outcome.fails = true;
                 break;
             }
@@ -204,7 +213,7 @@ FailureCheck FailureOfDifference() {
 Result<ShrinkReport> Shrink(const CallRecording& recording, const FailureCheck& failure,
                             const ShrinkSettings& settings) {
     if (settings.jobs.empty()) return Error{ErrorCode::OutOfRange, "jobs is empty; the program needs a world"};
-    if (!failure) return Error{ErrorCode::Unsupported, "failure is empty; nothing would fail"};
+    if (!failure && !settings.isolation) return Error{ErrorCode::Unsupported, "failure is empty; nothing would fail"};
     const Result<RecordedObjects> objects = ReadObjects(recording, settings.sources);
     if (!objects) return objects.GetError();
     return Shrinker(recording, objects.Value(), failure, settings).Run();

@@ -6,6 +6,7 @@
 
 #include <Fulcrum/Math/Function.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
+#include <Fulcrum/Physics/Recording/CallRecorder.h>
 #include <Fulcrum/Physics/Recording/CallRecording.h>
 #include <Fulcrum/Physics/Recording/ReplaySources.h>
 
@@ -27,10 +28,20 @@ FailureCheck FailureOfHeight(double height);
 // The worlds' states differ: give several numbers of threads.
 FailureCheck FailureOfDifference();
 
+// Calls play(send) in a process of its own. Returns whether that died, and the bytes that it sent until then.
+struct IsolatedRun {
+    bool hasDied = false;
+    std::vector<std::byte> sent{};
+};
+using Isolation = Function<IsolatedRun(const Function<void(const CallRecorder::Sink& send)>& play)>;
+
 struct ShrinkSettings {
     std::vector<JobSystem*> jobs{nullptr};  // of each world; null: no threads
     ReplaySources sources{};
     size_t mostReplays = 3000;  // of programs that are tried
+    // For programs that crash: each is played so, and fails if its process dies. The check of the failure may be empty
+    // then. Threads of the job systems do not exist in a forked process: without `jobs`.
+    Isolation isolation{};
     // Called for each program that is tried; null: nobody is told.
     Function<void(size_t replays, size_t calls)> progress{};
 };

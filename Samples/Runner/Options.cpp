@@ -123,8 +123,10 @@ void AddShrinkOptions(CLI::App& app, ShrinkOptions& options) {
                                  [&](double value) { options.below = value; });
     CLI::Option* differs =
         app.add_flag("--differs", options.differs, "it fails if one thread and several give different bits");
-    speed->excludes(below)->excludes(differs);
-    below->excludes(differs);
+    CLI::Option* crashes = app.add_flag("--crashes", options.crashes, "it fails if the program dies; with one thread");
+    speed->excludes(below)->excludes(differs)->excludes(crashes);
+    below->excludes(differs)->excludes(crashes);
+    differs->excludes(crashes);
     AddText(app, "--out", "the smaller recording (default: FILE with .small before its ending)",
             [&](const std::string& text) { options.out = text; })
         ->type_name("FILE");

@@ -40,9 +40,9 @@ enum class CommandKind { Help, Version, List, Run, RunFile, Export, Drop, Replay
 
 // What a program is shrunk for, see Physics/Recording/Shrink.h.
 struct ShrinkOptions {
-    std::optional<double> speed, below;  // m/s, m
-    bool differs = false;                // none of them: a frozen body
-    std::filesystem::path out;           // empty: beside the recording
+    std::optional<double> speed, below;     // m/s, m
+    bool differs = false, crashes = false;  // none of them: a frozen body
+    std::filesystem::path out;              // empty: beside the recording
 };
 
 struct Command {

@@ -2,11 +2,15 @@
 
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Physics/Recording/Replay.h>
-#include <Fulcrum/Physics/Recording/Shrink.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Runner/Simulation.h>
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 
@@ -31,6 +35,38 @@ FailureCheck FailureOf(const ShrinkOptions& options) {
 }
 
 }  // namespace
+
+IsolatedRun RunInAProcess(const Function<void(const CallRecorder::Sink& send)>& play) {
+    int ends[2];
+    IsolatedRun run;
+    if (pipe(ends) != 0) return run;
+    std::fflush(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+        close(ends[0]);
+        const rlimit none{0, 0};
+        setrlimit(RLIMIT_CORE, &none);
+        for (FILE* const output : {stdout, stderr})
+            if (!std::freopen("/dev/null", "w", output)) _exit(0);
+        play([end = ends[1]](std::span<const std::byte> bytes) {
+            while (!bytes.empty()) {
+                const ssize_t sent = write(end, bytes.data(), bytes.size());
+                if (sent <= 0) return false;
+                bytes = bytes.subspan(static_cast<size_t>(sent));
+            }
+            return true;
+        });
+        _exit(0);
+    }
+    close(ends[1]);
+    std::array<std::byte, 65536> room;
+    for (ssize_t got = 0; (got = read(ends[0], room.data(), room.size())) > 0;)
+        run.sent.insert(run.sent.end(), room.begin(), room.begin() + got);
+    close(ends[0]);
+    int status = 0;
+    run.hasDied = child > 0 && waitpid(child, &status, 0) == child && status != 0;
+    return run;
+}
 
 int ReplayFile(const Command& command) {
     const Result<CallRecording> recording = CallRecording::ReadFile(command.file.string());
@@ -66,6 +102,10 @@ int ShrinkFile(const Command& command) {
     ThreadPool several(static_cast<uint32_t>(std::max(command.options.threads, 4)));
     ShrinkSettings settings{.jobs = {&jobs}};
     if (command.shrink.differs) settings.jobs = {nullptr, &several};
+    if (command.shrink.crashes) {
+        settings.jobs = {nullptr};
+        settings.isolation = RunInAProcess;
+    }
     settings.progress = [](size_t replays, size_t calls) {
         if (replays % 100 == 0) std::fprintf(stderr, "%zu programs tried, %zu calls\n", replays, calls);
     };

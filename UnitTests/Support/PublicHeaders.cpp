@@ -96,7 +96,7 @@ std::vector<std::string> PublicFunction::ParameterNames() const {
 }
 
 std::vector<PublicFunction> PublicFunctionsOf(const std::string& header, const std::string& type) {
-    static const std::regex kFunction(R"(^(.*[ &*>])(\w+)\((.*)\)( const)?( override| final| = 0)*$)");
+    static const std::regex kFunction(R"(^([^(]*[ &*>])(\w+)\((.*)\)( const)?( override| final| = 0)*$)");
     std::vector<PublicFunction> functions;
     for (const std::string& text : Declarations(BodyOf(header, type))) {
         std::smatch match;
@@ -105,7 +105,7 @@ std::vector<PublicFunction> PublicFunctionsOf(const std::string& header, const s
         if (name == type || text.find("operator") != std::string::npos || text.find("friend ") == 0 ||
             text.find("explicit ") == 0 || text.find("using ") == 0 || text.find('~') < text.find('('))
             continue;
-        functions.push_back({name, match[3], match[4].matched, before.find("static ") == 0});
+        functions.push_back({name, before, match[3], match[4].matched, before.find("static ") == 0});
     }
     return functions;
 }
@@ -134,6 +134,11 @@ std::vector<PublicMember> MembersOf(const std::string& header, const std::string
         }
         code += (code.empty() ? "" : " ") + text;
         beside += said;
+        if (code.ends_with(") {")) {  // a function's body
+            while (std::getline(stream, line) && line != "    }") continue;
+            above.clear(), beside.clear(), code.clear();
+            continue;
+        }
         if (!code.ends_with(';') && !code.ends_with('}')) continue;
         const size_t bracket = code.find('('), equals = code.find('=');
         const bool isFunction = bracket < equals || code.find("friend ") == 0 || code.find("static ") == 0;

@@ -9,6 +9,7 @@ namespace fulcrum::testing {
 
 struct PublicFunction {
     std::string name;
+    std::string returns;     // the type, and what stands before it
     std::string parameters;  // as declared, in one line
     bool isConst = false, isStatic = false;
 
