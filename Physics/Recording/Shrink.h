@@ -56,8 +56,8 @@ struct ShrinkReport {
 };
 
 // Calls that name a body or joint whose creation is left out are left out, too; batches become bodies created one by
-// one. Errors: Unsupported (it does not fail; something in it is neither in it nor in the sources), Degenerate
-// (damaged).
+// one. Children of mutable compounds are named as they were: calls about them may be refused then.
+// Errors: Unsupported (it does not fail; something in it is neither in it nor in the sources), Degenerate (damaged).
 Result<ShrinkReport> Shrink(const CallRecording& recording, const FailureCheck& failure,
                             const ShrinkSettings& settings = {});
 
