@@ -32,4 +32,7 @@
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
 #include <Fulcrum/Physics/Ragdoll/SkeletonMapping.h>
 #include <Fulcrum/Physics/Ragdoll/Stabilize.h>
+#include <Fulcrum/Physics/Recording/CallRecorder.h>
+#include <Fulcrum/Physics/Recording/Replay.h>
+#include <Fulcrum/Physics/Recording/Shrink.h>
 #include <Fulcrum/Version.h>

@@ -12,6 +12,7 @@
 #include <Fulcrum/Physics/World/SteadyPushes.h>
 #include <Fulcrum/Physics/World/Teleports.h>
 #include <Fulcrum/Physics/World/Waking.h>
+#include <Fulcrum/Physics/World/WorldChange.h>
 
 #include <algorithm>
 #include <cmath>
@@ -95,8 +96,8 @@ void GainMass(BodyStore& bodies, uint32_t body) {
 }  // namespace
 
 Status BodyInterface::SetMotionType(BodyId id, MotionType motion) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetMotionType> change(world_, id, motion);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
     BodyStore& bodies = world_.bodies;
@@ -135,8 +136,8 @@ Status BodyInterface::SetMotionType(BodyId id, MotionType motion) {
 }
 
 Status BodyInterface::SetMass(BodyId id, float mass) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<Overload<BodyId, float>::Of(&BodyInterface::SetMass)> change(world_, id, mass);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckPositive("mass", mass)) return *e;
     KeptMass next = AnyMassOf(world_.bodies, id.index);
@@ -149,8 +150,9 @@ Status BodyInterface::SetMass(BodyId id, float mass) {
 }
 
 Status BodyInterface::SetMass(BodyId id, float mass, const SymmetricMatrix3& inertia) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<Overload<BodyId, float, const SymmetricMatrix3&>::Of(&BodyInterface::SetMass)> change(
+        world_, id, mass, inertia);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e =
             FirstOf(CheckPositive("mass", mass), CheckFinite("inertia", Vector3(inertia.xx, inertia.yy, inertia.zz)),
@@ -173,8 +175,8 @@ SymmetricMatrix3 BodyInterface::GetInertia(BodyId id) const {
 }
 
 Status BodyInterface::SetPoses(std::span<const BodyId> ids, std::span<const Pose> poses) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetPoses> change(world_, ids, poses);
+    if (change.Refusal()) return *change.Refusal();
     if (ids.size() != poses.size())
         return Error{ErrorCode::OutOfRange, "there are " + std::to_string(ids.size()) + " bodies and " +
                                                 std::to_string(poses.size()) + " poses; each body needs one"};
@@ -200,8 +202,8 @@ Status BodyInterface::SetPose(BodyId id, const Position& position, const Quatern
 }
 
 Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetMaterial> change(world_, id, material);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = Check(material)) return *e;
     world_.bodies.cold[id.index].material = material;
@@ -219,8 +221,8 @@ Material BodyInterface::GetMaterial(BodyId id) const {
 }
 
 Status BodyInterface::SetLayer(BodyId id, uint8_t layer) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetLayer> change(world_, id, layer);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("layer", layer, 0, 31)) return *e;
     BodyDynamics& d = world_.bodies.dynamics[id.index];
@@ -234,8 +236,8 @@ Status BodyInterface::SetLayer(BodyId id, uint8_t layer) {
 }
 
 Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetCategoryAndMask> change(world_, id, category, mask);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.bodies.SetFilter(id.index, {category, mask, GetGroup(id)});
     Refilter(world_, id.index);
@@ -243,8 +245,8 @@ Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t 
 }
 
 Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetGroup> change(world_, id, group);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.bodies.SetFilter(id.index, {GetCategory(id), GetMask(id), group});
     Refilter(world_, id.index);
@@ -252,8 +254,8 @@ Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
 }
 
 Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetGravityFactor> change(world_, id, factor);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("gravityFactor", factor, -1e6, 1e6)) return *e;
     world_.bodies.dynamics[id.index].gravityFactor = factor;
@@ -262,8 +264,8 @@ Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
 }
 
 Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetContinuous> change(world_, id, continuous);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckContinuous(continuous, *world_.bodies.cold[id.index].shape)) return *e;
     constexpr ContinuousCollision kOff = ContinuousCollision::Off;
@@ -278,8 +280,8 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
 
 Status BodyInterface::SetPenetrationTarget(BodyId id, float target) {
     if (MaybeError error = CheckTarget("penetrationTarget", target)) return *error;
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetPenetrationTarget> change(world_, id, target);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.bodies.SetPenetrationTarget(id.index, target);
     // Loads are noted as parts of what they may be.
@@ -289,8 +291,8 @@ Status BodyInterface::SetPenetrationTarget(BodyId id, float target) {
 }
 
 Status BodyInterface::SetReportsContacts(BodyId id, bool reportsContacts) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetReportsContacts> change(world_, id, reportsContacts);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (reportsContacts) world_.bodies.reportsContacts.Insert(id.index);
     else world_.bodies.reportsContacts.Erase(id.index);
@@ -298,8 +300,8 @@ Status BodyInterface::SetReportsContacts(BodyId id, bool reportsContacts) {
 }
 
 Status BodyInterface::SetGravity(BodyId id, const std::optional<Vector3>& gravity) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetGravity> change(world_, id, gravity);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     constexpr double kMost = 1e6;  // as the system's
     if (gravity)
@@ -315,8 +317,8 @@ Status BodyInterface::SetGravity(BodyId id, const std::optional<Vector3>& gravit
 }
 
 Status BodyInterface::SetDamping(BodyId id, float linear, float angular) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetDamping> change(world_, id, linear, angular);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckNotNegative("linear", linear), CheckNotNegative("angular", angular))) return *e;
     world_.bodies.dynamics[id.index].linearDamping = linear;
@@ -325,8 +327,8 @@ Status BodyInterface::SetDamping(BodyId id, float linear, float angular) {
 }
 
 Status BodyInterface::SetLockedAxes(BodyId id, LockedAxes axes) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetLockedAxes> change(world_, id, axes);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("axes", static_cast<uint8_t>(axes), 0, 63)) return *e;
     world_.bodies.dynamics[id.index].lockedAxes = axes;
@@ -337,8 +339,8 @@ Status BodyInterface::SetLockedAxes(BodyId id, LockedAxes axes) {
 }
 
 Status BodyInterface::SetMaxSpeeds(BodyId id, float linear, float angular) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetMaxSpeeds> change(world_, id, linear, angular);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckPositive("linear", linear), CheckPositive("angular", angular))) return *e;
     world_.bodies.dynamics[id.index].maxLinearSpeed = std::min(linear, kFastestLinear);
@@ -347,16 +349,16 @@ Status BodyInterface::SetMaxSpeeds(BodyId id, float linear, float angular) {
 }
 
 Status BodyInterface::SetUserData(BodyId id, uint64_t userData) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetUserData> change(world_, id, userData);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.bodies.cold[id.index].userData = userData;
     return Done{};
 }
 
 Status BodyInterface::SetAllowSleep(BodyId id, bool allowSleep) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetAllowSleep> change(world_, id, allowSleep);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.bodies.dynamics[id.index].allowSleep = allowSleep;
     if (!allowSleep) WakeBody(world_, id.index);

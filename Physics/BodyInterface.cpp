@@ -10,7 +10,9 @@
 #include <Fulcrum/Physics/World/Sleeping.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 #include <Fulcrum/Physics/World/SteadyPushes.h>
+#include <Fulcrum/Physics/World/Velocities.h>
 #include <Fulcrum/Physics/World/Waking.h>
+#include <Fulcrum/Physics/World/WorldChange.h>
 
 #include <cmath>
 #include <limits>
@@ -49,13 +51,6 @@ void FillDynamics(BodyDynamics& d, BodyCold& cold, const BodySettings& s) {
         s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia;
     if (isDynamic) SetMass(d, mass.principalAxes, kilograms, inertia);
     else cold.keptMass = std::make_unique<KeptMass>(KeptMass{kilograms, inertia, mass.principalAxes});
-}
-
-// Sets a velocity given by the user: any finite one, clamped to what bodies support.
-void SetVelocityOf(WorldState& world, uint32_t body, Vector3 linear, Vector3 angular) {
-    LimitLength(linear, kFastestLinear);
-    LimitLength(angular, kFastestAngular);
-    world.bodies.SetVelocity(body, linear, angular);
 }
 
 // Called for the first body of an empty world: moves the origin of the bounds near it. Limited so that positions near
@@ -157,15 +152,15 @@ void Unload(WorldState& world, uint32_t body, uint32_t from, float load, int dep
 }  // namespace
 
 Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::Create> change(world_, settings);
+    if (change.Refusal()) return *change.Refusal();
     if (MaybeError error = Check(settings)) return *error;
-    return Add(world_, settings);
+    return change.Created<BodyId>(Add(world_, settings));
 }
 
 Result<std::vector<BodyId>> BodyInterface::Commit(const BodyBatch& batch) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::Commit> change(world_, batch);
+    if (change.Refusal()) return *change.Refusal();
     size_t colliders = 0;
     for (const BodySettings& settings : batch.Bodies()) colliders += ColliderCountOf(*settings.shape);
     world_.bodies.Reserve(batch.Bodies().size());
@@ -173,12 +168,12 @@ Result<std::vector<BodyId>> BodyInterface::Commit(const BodyBatch& batch) {
     std::vector<BodyId> ids;
     ids.reserve(batch.Bodies().size());
     for (const BodySettings& settings : batch.Bodies()) ids.push_back(Add(world_, settings));
-    return ids;
+    return change.Created<std::vector<BodyId>>(std::move(ids));
 }
 
 Status BodyInterface::Remove(BodyId id) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::Remove> change(world_, id);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
     WakeBody(world_, body);
@@ -209,6 +204,8 @@ Status BodyInterface::Remove(BodyId id) {
 bool BodyInterface::Exists(BodyId id) const { return world_.bodies.Find(id); }
 
 Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt) {
+    const WorldChange<&BodyInterface::MoveKinematic> change(world_, id, position, rotation, dt);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Kinematic)
         return Error{ErrorCode::Unsupported, "MoveKinematic needs a kinematic body"};
@@ -219,28 +216,16 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
     const Pose goal = CenterPose(*world_.bodies.cold[id.index].shape, position, Normalized(rotation));
     const Vector3 linear = Vector3((goal.position - now.position).cast<float>()) * (1.0f / dt);
     const Vector3 angular = RotationVectorOf(goal.rotation * now.rotation.Conjugate()) * (1.0f / dt);
-    if (Status status = SetVelocity(id, linear, angular); !status) return status;
+    if (MaybeError e = ChangeVelocity(world_, id, linear, angular)) return *e;
     world_.bodies.cold[id.index].singleMove = SingleMove::Next;
     world_.bodies.singleMoves.Insert(id.index);
     return Done{};
 }
 
 Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
-    if (!Exists(id)) return Unknown(id);
-    if (MaybeError e = FirstOf(CheckFinite("linear", linear), CheckFinite("angular", angular))) return *e;
-    const BodyDynamics& d = world_.bodies.dynamics[id.index];
-    if (d.motion == MotionType::Static) return Error{ErrorCode::Unsupported, "a static body has no velocity"};
-    if (d.frozen) return Error{ErrorCode::Unsupported, "the body is frozen; SetPose revives it"};
-    WakeBody(world_, id.index);
-    if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0)) && !d.awake) {
-        world_.bodies.MarkAwake(id.index);
-        RequeueColliders(world_.bodies, world_.colliders, id.index);
-    }
-    if (d.motion == MotionType::Kinematic && !(linear.isZero(0) && angular.isZero(0))) WakeJoined(world_, id.index);
-    if (world_.bodies.singleMoves.Erase(id.index)) world_.bodies.cold[id.index].singleMove = SingleMove::None;
-    SetVelocityOf(world_, id.index, linear, angular);
+    const WorldChange<&BodyInterface::SetVelocity> change(world_, id, linear, angular);
+    if (change.Refusal()) return *change.Refusal();
+    if (MaybeError e = ChangeVelocity(world_, id, linear, angular)) return *e;
     return Done{};
 }
 
@@ -265,8 +250,6 @@ Vector3 ArmTo(const WorldState& world, BodyId id, const Position& point) {
 }
 
 Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& torque) {
-    const WorldLock::Exclusive alone(world.lock);
-    if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque)))
         return *e;
     if (force.isZero(0) && torque.isZero(0)) return Done{};
@@ -281,8 +264,6 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
 }
 
 Status ApplyImpulse(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
-    const WorldLock::Exclusive alone(world.lock);
-    if (alone.Refusal()) return *alone.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse),
                                CheckFinite("angular impulse", angularImpulse)))
         return *e;
@@ -297,26 +278,42 @@ Status ApplyImpulse(WorldState& world, BodyId id, const Vector3& impulse, const 
 
 }  // namespace
 
-Status BodyInterface::AddForce(BodyId id, const Vector3& force) { return Push(world_, id, force, Vector3::Zero()); }
-Status BodyInterface::AddTorque(BodyId id, const Vector3& torque) { return Push(world_, id, Vector3::Zero(), torque); }
+Status BodyInterface::AddForce(BodyId id, const Vector3& force) {
+    const WorldChange<&BodyInterface::AddForce> change(world_, id, force);
+    if (change.Refusal()) return *change.Refusal();
+    return Push(world_, id, force, Vector3::Zero());
+}
+Status BodyInterface::AddTorque(BodyId id, const Vector3& torque) {
+    const WorldChange<&BodyInterface::AddTorque> change(world_, id, torque);
+    if (change.Refusal()) return *change.Refusal();
+    return Push(world_, id, Vector3::Zero(), torque);
+}
 Status BodyInterface::AddForceAt(BodyId id, const Vector3& force, const Position& point) {
+    const WorldChange<&BodyInterface::AddForceAt> change(world_, id, force, point);
+    if (change.Refusal()) return *change.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
     return Push(world_, id, force, Cross<float>(ArmTo(world_, id, point), force));
 }
 Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) {
+    const WorldChange<&BodyInterface::AddImpulse> change(world_, id, impulse);
+    if (change.Refusal()) return *change.Refusal();
     return ApplyImpulse(world_, id, impulse, Vector3::Zero());
 }
 Status BodyInterface::AddAngularImpulse(BodyId id, const Vector3& impulse) {
+    const WorldChange<&BodyInterface::AddAngularImpulse> change(world_, id, impulse);
+    if (change.Refusal()) return *change.Refusal();
     return ApplyImpulse(world_, id, Vector3::Zero(), impulse);
 }
 Status BodyInterface::AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point) {
+    const WorldChange<&BodyInterface::AddImpulseAt> change(world_, id, impulse, point);
+    if (change.Refusal()) return *change.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
     return ApplyImpulse(world_, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
 }
 
 Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetSensor> change(world_, id, isSensor);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     BodyCold& cold = world_.bodies.cold[id.index];
     if (cold.isSensor == isSensor) return Done{};
@@ -336,8 +333,8 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
 }
 
 Status BodyInterface::SetSensorSees(BodyId id, SensorSees sees) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetSensorSees> change(world_, id, sees);
+    if (change.Refusal()) return *change.Refusal();
     if (MaybeError e = CheckIsSensor(world_, id)) return *e;
     if (MaybeError e = CheckSensor(sees)) return *e;
     world_.sensors.Add(id, sees, world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay);
@@ -345,24 +342,24 @@ Status BodyInterface::SetSensorSees(BodyId id, SensorSees sees) {
 }
 
 Status BodyInterface::SetSensorReportsStay(BodyId id, bool reportsStay) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetSensorReportsStay> change(world_, id, reportsStay);
+    if (change.Refusal()) return *change.Refusal();
     if (MaybeError e = CheckIsSensor(world_, id)) return *e;
     world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay = reportsStay;
     return Done{};
 }
 
 Status BodyInterface::Wake(BodyId id) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::Wake> change(world_, id);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     WakeBody(world_, id.index);
     return Done{};
 }
 
 Status BodyInterface::Sleep(BodyId id) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::Sleep> change(world_, id);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (world_.bodies.dynamics[id.index].motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "only dynamic bodies sleep"};

@@ -106,7 +106,8 @@ public:
     Status SetAllowSleep(BodyId id, bool allowSleep);  // false wakes the body
     Status SetContinuous(BodyId id,
                          ContinuousCollision continuous);  // Errors also: OutOfRange, Unsupported (a surface or plane)
-    // How deep it may sink, see BodySettings; 0: as the system's. Errors also: NonFinite, Negative.
+    // How deep it may sink, see BodySettings; 0: as the system's, infinite: any. Errors also: NonFinite (NaN),
+    // Negative.
     Status SetPenetrationTarget(BodyId id, float target);
     // Whether its contacts are reported as events, see EventSettings. If not, contacts reported so far get an end event
     // in the next step in which the body is awake.

@@ -4,6 +4,7 @@
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/Waking.h>
+#include <Fulcrum/Physics/World/WorldChange.h>
 
 namespace fulcrum {
 
@@ -39,8 +40,6 @@ ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& ed
 // plan(compound, mass) returns the edit.
 template <class Plan>
 Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, const Plan& plan) {
-    const WorldLock::Exclusive alone(world.lock);
-    if (alone.Refusal()) return *alone.Refusal();
     if (!world.bodies.Find(id)) return Unknown(id);
     if (MaybeError e = CheckEnum("mass", mass, MassUpdate::Keep)) return *e;
     const BodyCold& cold = world.bodies.cold[id.index];
@@ -70,23 +69,32 @@ Status WithoutId(const Result<ChildId>& result) {
 }  // namespace
 
 Result<ChildId> BodyInterface::AddChild(BodyId id, const CompoundShape::ChildSettings& child, MassUpdate mass) {
-    return EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanAdd(child, m); });
+    const WorldChange<&BodyInterface::AddChild> change(world_, id, child, mass);
+    if (change.Refusal()) return *change.Refusal();
+    return change.Created(
+        EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanAdd(child, m); }));
 }
 
 Status BodyInterface::SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings,
                                MassUpdate mass) {
+    const WorldChange<&BodyInterface::SetChild> change(world_, id, child, settings, mass);
+    if (change.Refusal()) return *change.Refusal();
     return WithoutId(EditChildren(
         world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanSet(child, settings, m); }));
 }
 
 Status BodyInterface::MoveChild(BodyId id, ChildId child, const Vector3& position, const Quaternion& rotation,
                                 MassUpdate mass) {
+    const WorldChange<&BodyInterface::MoveChild> change(world_, id, child, position, rotation, mass);
+    if (change.Refusal()) return *change.Refusal();
     return WithoutId(EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) {
         return c.PlanMove(child, position, rotation, m);
     }));
 }
 
 Status BodyInterface::RemoveChild(BodyId id, ChildId child, MassUpdate mass) {
+    const WorldChange<&BodyInterface::RemoveChild> change(world_, id, child, mass);
+    if (change.Refusal()) return *change.Refusal();
     return WithoutId(
         EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanRemove(child, m); }));
 }
@@ -97,8 +105,8 @@ const MutableCompound* BodyInterface::GetChildren(BodyId id) const {
 }
 
 Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&BodyInterface::SetShape> change(world_, id, shape, mass);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
     BodyCold& cold = world_.bodies.cold[body];

@@ -5,6 +5,9 @@
 #include <Fulcrum/Physics/Snapshots/SnapshotElements.h>
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
 #include <Fulcrum/Physics/Validation.h>
+#include <Fulcrum/Physics/World/Teleports.h>
+#include <Fulcrum/Physics/World/Velocities.h>
+#include <Fulcrum/Physics/World/WorldChange.h>
 
 #include <algorithm>
 
@@ -161,7 +164,8 @@ Status PhysicsSystem::SaveBodies(std::span<const BodyId> bodies, std::vector<std
 }
 
 Status PhysicsSystem::RestoreBodies(std::span<const std::byte> bytes) {
-    if (const WorldLock::Exclusive alone(world_->lock); alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&PhysicsSystem::RestoreBodies> change(*world_, bytes);
+    if (change.Refusal()) return *change.Refusal();
     const Result<SnapshotParts> parts = CheckSnapshot(bytes, kPartMagic);
     if (!parts) return parts.GetError();
     SnapshotReader s(parts.Value().data);
@@ -176,11 +180,10 @@ Status PhysicsSystem::RestoreBodies(std::span<const std::byte> bytes) {
         const Vector3 offset = world_->bodies.cold[body.id.index].shape->Mass().centerOfMass;
         const Position place =
             body.center.position + body.remainder.value - Rotate(body.center.rotation, offset).cast<double>();
-        // Errors are irrelevant: static bodies have no velocity.
-        (void)bool(bodies_.SetPose(body.id, place, body.center.rotation));
-        (void)bool(bodies_.SetVelocity(body.id, body.linear, body.angular));
+        const BodyPlace there{body.id.index, {place, body.center.rotation}};
+        Teleport(*world_, {&there, 1});
+        (void)ChangeVelocity(*world_, body.id, body.linear, body.angular);  // static bodies have none
     }
-    const WorldLock::Exclusive alone(world_->lock);
     for (const SavedBody& body : saved) Complete(world_->bodies, body);
     for (const SavedJoint& joint : joints) {
         const JointRecord now = world_->joints.records[joint.id.index];

@@ -32,6 +32,14 @@ bool GroupFilterTable::Collides(const Member& a, const Member& b) const {
     return !apart_[size_t(a.subGroup) * subGroups_ + b.subGroup];
 }
 
+std::vector<GroupFilterTable::Pair> GroupFilterTable::Pairs() const {
+    std::vector<Pair> pairs;
+    for (uint32_t first = 0; first < subGroups_; ++first)
+        for (uint32_t second = first; second < subGroups_; ++second)
+            if (apart_[size_t(first) * subGroups_ + second]) pairs.push_back({first, second});
+    return pairs;
+}
+
 uint64_t GroupFilterTable::ContentHash() const {
     uint64_t hash = HashWord(kHashSeed, subGroups_);
     for (size_t i = 0; i < apart_.size(); ++i)

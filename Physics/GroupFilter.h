@@ -44,6 +44,8 @@ public:
 
     bool Collides(const Member& a, const Member& b) const override;
     uint64_t ContentHash() const override;
+    // The pairs that it was created from, sorted, each once, first <= second.
+    std::vector<Pair> Pairs() const;
 
 private:
     GroupFilterTable() = default;

@@ -6,6 +6,7 @@
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
+#include <Fulcrum/Physics/World/WorldChange.h>
 
 #include <algorithm>
 #include <cmath>
@@ -135,9 +136,7 @@ BodyId IdOf(const WorldState& world, uint32_t body) {
 
 }  // namespace
 
-Result<JointId> JointInterface::Add(const JointSettings& settings, std::unique_ptr<JointType> type) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+JointId JointInterface::Add(const JointSettings& settings, std::unique_ptr<JointType> type) {
     JointSettings s = settings;
     for (BodyId* body : {&s.bodyA, &s.bodyB}) body->index = IndexOf(world_, *body);
     const uint32_t index = world_.joints.Allocate();
@@ -177,7 +176,9 @@ Result<JointId> JointInterface::Create(const Settings& settings) {
     if (MaybeError error = Check(settings)) return *error;
     std::unique_ptr<JointType> type = MakeType(settings);
     if (!type) return Error{ErrorCode::Unsupported, "make: gave no joint type"};
-    return Add(settings, std::move(type));
+    const WorldChange<&JointInterface::Create<Settings>> change(world_, settings);
+    if (change.Refusal()) return *change.Refusal();
+    return change.template Created<JointId>(Add(settings, std::move(type)));
 }
 
 #define FULCRUM_INSTANTIATE(kind) template Result<JointId> JointInterface::Create(const kind##JointSettings&);
@@ -203,8 +204,8 @@ Result<JointId> JointInterface::CreateTarget(const TargetJointSettings& s) {
 }
 
 Status JointInterface::SetTarget(JointId id, const Position& target) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&JointInterface::SetTarget> change(world_, id, target);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckPosition("target", target)) return *error;
     const Joint& joint = world_.joints.joints[id.index];
@@ -219,8 +220,8 @@ Status JointInterface::SetTarget(JointId id, const Position& target) {
 }
 
 Status JointInterface::Remove(JointId id) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&JointInterface::Remove> change(world_, id);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     RemoveJoint(world_, id.index);
     return Done{};
@@ -229,8 +230,8 @@ Status JointInterface::Remove(JointId id) {
 bool JointInterface::Exists(JointId id) const { return world_.joints.Find(id); }
 
 Status JointInterface::SetEnabled(JointId id, bool enabled) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&JointInterface::SetEnabled> change(world_, id, enabled);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (world_.joints.joints[id.index].enabled != enabled) EnableJoint(world_, id.index, enabled);
     return Done{};
@@ -255,8 +256,6 @@ void ForgetRows(JointType& type) {
 
 template <class Change>
 Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckEnum("axis", axis, JointAxis::AngularZ)) return *error;
     AxisControl* control = ControlOf(id, axis);
@@ -274,21 +273,27 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
 }
 
 Status JointInterface::SetLimits(JointId id, JointAxis axis, const std::optional<JointLimits>& limits) {
+    const WorldChange<&JointInterface::SetLimits> change(world_, id, axis, limits);
+    if (change.Refusal()) return *change.Refusal();
     return ChangeControl(id, axis, [&](AxisControl& control) {
         control.limited = limits.has_value();
         if (limits) control.limits = *limits;
     });
 }
 Status JointInterface::SetMotor(JointId id, JointAxis axis, const JointMotor& motor) {
+    const WorldChange<&JointInterface::SetMotor> change(world_, id, axis, motor);
+    if (change.Refusal()) return *change.Refusal();
     return ChangeControl(id, axis, [&](AxisControl& control) { control.motor = motor; });
 }
 Status JointInterface::SetFriction(JointId id, JointAxis axis, float friction) {
+    const WorldChange<&JointInterface::SetFriction> change(world_, id, axis, friction);
+    if (change.Refusal()) return *change.Refusal();
     return ChangeControl(id, axis, [&](AxisControl& control) { control.friction = friction; });
 }
 
 Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&JointInterface::SetTargetOrientation> change(world_, id, target);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckRotation("target", target)) return *error;
     const Joint& joint = world_.joints.joints[id.index];
@@ -299,8 +304,8 @@ Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target
 
 Status JointInterface::SetErrorTarget(JointId id, float target) {
     if (MaybeError error = CheckTarget("errorTarget", target)) return *error;
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&JointInterface::SetErrorTarget> change(world_, id, target);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     world_.joints.SetErrorTarget(id.index, target);
     world_.joints.gaps[id.index] = {};
@@ -309,8 +314,8 @@ Status JointInterface::SetErrorTarget(JointId id, float target) {
 }
 
 Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&JointInterface::SetEffort> change(world_, id, effort);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = FirstOf(CheckRange("substeps", effort.substeps, 0, 64),
                                    CheckRange("velocityIterations", effort.velocityIterations, 0, 255),
@@ -324,8 +329,8 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
 }
 
 Status JointInterface::SetMassOverride(JointId id, const MassOverride& massOverride) {
-    const WorldLock::Exclusive alone(world_.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&JointInterface::SetMassOverride> change(world_, id, massOverride);
+    if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckMassOverride("massOverride", massOverride)) return *error;
     Joint& joint = world_.joints.joints[id.index];

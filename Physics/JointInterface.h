@@ -63,9 +63,11 @@ public:
     Status SetFriction(JointId id, JointAxis axis, float friction);
     // Target orientation of frame B relative to frame A for position motors. Errors also: NonFinite, Unnormalized.
     Status SetTargetOrientation(JointId id, const Quaternion& target);
-    // Minimum solver effort of the joint's island, see JointSettings; 0: the system's. Errors also: OutOfRange.
+    // Minimum solver effort of the joint's island, see JointSettings; 0: the system's. Of the effort only the substeps
+    // and iterations count. Errors also: OutOfRange.
     Status SetEffort(JointId id, const SolverSettings& effort);
-    // How far apart its anchors may be, m, see JointSettings; 0: as the system's. Errors also: NonFinite, Negative.
+    // How far apart its anchors may be, m, see JointSettings; 0: as the system's, infinite: anyhow. Errors also:
+    // NonFinite (NaN), Negative.
     Status SetErrorTarget(JointId id, float target);
     // Mass scales of the bodies for this joint, see JointSettings. Errors also: NonFinite, OutOfRange.
     Status SetMassOverride(JointId id, const MassOverride& massOverride);
@@ -98,7 +100,7 @@ public:
     void VisitOf(BodyId body, FunctionRef<void(JointId)> visit) const;
 
 private:
-    Result<JointId> Add(const JointSettings& settings, std::unique_ptr<JointType> type);
+    JointId Add(const JointSettings& settings, std::unique_ptr<JointType> type);
     AxisControl* ControlOf(JointId id, JointAxis axis) const;
     template <class Change>
     Status ChangeControl(JointId id, JointAxis axis, Change&& change);

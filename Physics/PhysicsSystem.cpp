@@ -9,6 +9,7 @@
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Filters.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
+#include <Fulcrum/Physics/World/WorldChange.h>
 
 #include <algorithm>
 #include <cstring>
@@ -42,9 +43,10 @@ PhysicsSystem::~PhysicsSystem() = default;
 Status PhysicsSystem::Update(double dt) {
     if (MaybeError error = CheckRange("dt", dt, 0, 1)) return *error;
     WorldState& world = *world_;
-    const WorldLock::Exclusive alone(world.lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&PhysicsSystem::Update> change(world, dt);
+    if (change.Refusal()) return *change.Refusal();
     RunStep(world, *step_, dt);
+    if (world.callObserver) world.callObserver->EndStep(HashOfState(world, *step_, *snapshots_));
     return Done{};
 }
 
@@ -68,8 +70,8 @@ const SystemSettings& PhysicsSystem::Settings() const { return world_->settings;
 
 Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (MaybeError error = Check(settings)) return *error;
-    const WorldLock::Exclusive alone(world_->lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&PhysicsSystem::SetSettings> change(*world_, settings);
+    if (change.Refusal()) return *change.Refusal();
     const std::array<uint32_t, 32> before = world_->settings.layerCollides;
     // The pair caches of one method are invalid for the other.
     if (settings.narrowPhase != world_->settings.narrowPhase)
@@ -92,8 +94,8 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
 }
 
 void PhysicsSystem::SetContactListener(const ContactListener* listener) {
-    const WorldLock::Exclusive alone(world_->lock);
-    if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
+    const WorldChange<&PhysicsSystem::SetContactListener> change(*world_, listener);
+    if (change.Refusal()) return ReportMisuse(*change.Refusal());
     ChangeListener(*world_, listener);
 }
 
@@ -103,6 +105,12 @@ void PhysicsSystem::SetStepObserver(StepObserver* observer) {
     world_->observer = observer;
 }
 
+void PhysicsSystem::SetCallObserver(CallObserver* observer) {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
+    world_->callObserver = observer;
+}
+
 Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
@@ -110,8 +118,8 @@ Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
 }
 
 Status PhysicsSystem::RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources) {
-    const WorldLock::Exclusive alone(world_->lock);
-    if (alone.Refusal()) return *alone.Refusal();
+    const WorldChange<&PhysicsSystem::RestoreSnapshot> change(*world_, bytes, sources);
+    if (change.Refusal()) return *change.Refusal();
     return ReadSnapshot(bytes, sources, *snapshots_, *world_, *step_);
 }
 

@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Physics/BodyInterface.h>
+#include <Fulcrum/Physics/CallObserver.h>
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/JointInterface.h>
 #include <Fulcrum/Physics/QueryInterface.h>
@@ -60,6 +61,8 @@ public:
     // The observer of steps and their stages from now on (not owned, must outlive its use); null: none. Not part of
     // snapshots.
     void SetStepObserver(StepObserver* observer);
+    // The observer of calls that change the world, likewise.
+    void SetCallObserver(CallObserver* observer);
 
     // The whole state as bytes, from which steps go on with the same bits: `bytes` are overwritten, and allocated anew
     // only where they do not suffice. Shapes, group filters and what joints of one's own are made of are named, not

@@ -133,8 +133,8 @@ struct BodySettings {
     CollisionGroup group{};  // and only if the filter of their common group, if any, allows it
     ContinuousCollision continuous = ContinuousCollision::Off;  // not for meshes, height fields and planes
     uint64_t userData = 0;
-    // In place of AccuracyTarget::penetration for the contacts of this body, > 0; 0: as that. Of two bodies that have
-    // one the lesser counts.
+    // In place of AccuracyTarget::penetration for the contacts of this body, > 0; 0: as that, infinite: any
+    // penetration. Of two bodies that have one the lesser counts.
     float penetrationTarget = 0;
     bool reportsContacts = true;                  // see EventSettings
     bool isSensor = false;                        // no contacts; reports bodies inside: PhysicsSystem::SensorEvents

@@ -1,7 +1,8 @@
 // Reads settings from JSON: an archive for SettingsFields.h. One thread.
 #pragma once
 
-#include <Fulcrum/Assets/Json/SettingsFields.h>
+#include <Fulcrum/Assets/Json/JsonNames.h>
+#include <Fulcrum/Physics/SettingsFields.h>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,8 @@
 // Writes settings as JSON: an archive for SettingsFields.h. Pure functions.
 #pragma once
 
-#include <Fulcrum/Assets/Json/SettingsFields.h>
+#include <Fulcrum/Assets/Json/JsonNames.h>
+#include <Fulcrum/Physics/SettingsFields.h>
 
 #include <nlohmann/json.hpp>
 

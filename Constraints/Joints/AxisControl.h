@@ -18,8 +18,8 @@ enum class JointAxis : uint8_t { LinearX, LinearY, LinearZ, AngularX, AngularY, 
 
 // m or rad.
 struct JointLimits {
-    float min = 0.0f;
-    float max = 0.0f;         // >= min; equal to min: locked there
+    float min = 0.0f;         // -infinity: none on this side
+    float max = 0.0f;         // >= min; equal to min: locked there; infinity: none on this side
     SpringSettings spring{};  // frequency 0 or stiffness 0: a hard stop
 };
 

@@ -52,7 +52,8 @@ void BodyStore::Free(uint32_t index) {
     cold[index] = {};
     cold[index].generation = generation;
     for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves}) set->Erase(index);
-    free_.push_back(index);
+    // After the last generation the index is not used again, so that no id becomes valid again.
+    if (generation != 0) free_.push_back(index);
     --count_;
 }
 

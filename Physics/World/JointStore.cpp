@@ -37,7 +37,8 @@ void JointStore::Free(uint32_t index) {
     ++joint.generation;
     types[index] = nullptr;
     breakable.Erase(index);
-    free_.push_back(index);
+    // As with bodies: after the last generation the index is not used again.
+    if (joint.generation != 0) free_.push_back(index);
     --count_;
 }
 

@@ -18,6 +18,7 @@
 namespace fulcrum {
 
 class ContactListener;
+class CallObserver;
 class StepObserver;
 
 struct WorldState {
@@ -26,6 +27,7 @@ struct WorldState {
     std::unique_ptr<JobSystem> jobs;  // the user's, or our own, as WorldJobs
     const ContactListener* listener = nullptr;
     StepObserver* observer = nullptr;
+    CallObserver* callObserver = nullptr;
 
     BodyStore bodies;
     ColliderStore colliders;

@@ -4,11 +4,13 @@
 #include <Fulcrum/Assets/SceneFile.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Math/Wide.h>
+#include <Fulcrum/Physics/Recording/CallRecorder.h>
 #include <Fulcrum/Samples/Runner/FileScene.h>
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Runner/Recorder.h>
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
+#include <Fulcrum/Samples/Runner/ReplayCommands.h>
 #include <Fulcrum/Samples/Runner/RunReport.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 #include <Fulcrum/Samples/Viewer/GlbWriter.h>
@@ -80,9 +82,18 @@ int RunJob(const Job& job) {
 
     std::optional<ThreadPool> pool;
     if (job.options.threads > 1) pool.emplace(static_cast<uint32_t>(job.options.threads));
-    auto created = SceneWorld::Create(job.scene, job.input, pool ? &*pool : nullptr);
+    SceneInput input = job.input;
+    std::optional<Result<std::unique_ptr<CallRecorder>>> calls;
+    if (!job.options.calls.empty())
+        input.created = [&](PhysicsSystem& system) {
+            calls = CallRecorder::ToFile(system, job.options.calls.string());
+        };
+    auto created = SceneWorld::Create(job.scene, input, pool ? &*pool : nullptr);
     if (!created) return Fail(job.name + ": " + created.GetError().message);
     SceneWorld& world = *created.Value();
+    if (calls && !*calls) return Fail(calls->GetError().message);
+    std::unique_ptr<CallRecorder> callRecorder;  // goes before the world
+    if (calls) callRecorder = std::move(calls->Value());
 
     const int steps = job.options.StepsOf(job.scene);
     std::optional<Recorder> recorder;
@@ -101,6 +112,7 @@ int RunJob(const Job& job) {
         });
     }();
     if (!run) return Fail(job.name + ": " + run.GetError().message);
+    if (callRecorder && !callRecorder->GetStatus()) return Fail(callRecorder->GetStatus().GetError().message);
 
     const std::vector<ReportLine> lines = ReportLines(job.scene, run.Value(), job.input.seed);
     if (recorder) recorder->recording.report = lines;
@@ -233,6 +245,8 @@ int Execute(const Command& command) {
         case CommandKind::RunFile: return RunFile(command, input, json);
         case CommandKind::Export: return Export(command);
         case CommandKind::Drop: return Drop(command, input, json);
+        case CommandKind::Replay: return ReplayFile(command);
+        case CommandKind::Shrink: return ShrinkFile(command);
         case CommandKind::List: return List();
         case CommandKind::Version: return PrintVersion();
         default: std::printf("%s", command.help.c_str()); return 0;

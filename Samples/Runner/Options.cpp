@@ -80,6 +80,11 @@ void AddOntoOptions(CLI::App& app, Command& command) {
         ->needs(onto);
 }
 
+void AddThreads(CLI::App& app, RunOptions& options) {
+    AddInteger(app, "--threads", 1, kMostThreads, "threads (default: all of this machine)",
+               [&](int value) { options.threads = value; });
+}
+
 void AddRunOptions(CLI::App& app, RunOptions& options) {
     CLI::Option* steps =
         AddInteger(app, "--steps", 1, kMostSteps, "steps to simulate (default: the scene's own number)",
@@ -89,8 +94,7 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     })->excludes(steps);
     AddReal(app, "--dt", 1e-5, 1, "seconds a step (default 1/60, or that of the file)",
             [&](double value) { options.givenDt = options.dt = value; });
-    AddInteger(app, "--threads", 1, kMostThreads, "threads (default: all of this machine)",
-               [&](int value) { options.threads = value; });
+    AddThreads(app, options);
     AddSolverOptions(app, options.solver);
     AddNarrowPhaseOption(app, options.narrowPhase);
     app.add_flag("--errors", options.errors,
@@ -101,12 +105,31 @@ void AddRunOptions(CLI::App& app, RunOptions& options) {
     AddText(app, "--json", "also write the report as JSON; -: to standard output, all else to standard error",
             [&](const std::string& text) { options.json = text; })
         ->type_name("FILE");
+    AddText(app, "--calls", "also record the calls, for ./fulcrum replay and shrink", [&](const std::string& text) {
+        options.calls = text;
+    })->type_name("FILE");
     AddText(app, "--out", "folder of what is recorded (default: out)", [&](const std::string& text) {
         options.out = text;
     })->type_name("DIR");
     app.add_flag("--quiet", options.isQuiet, "say nothing but what goes wrong; the exit status says the rest");
     AddSeed(app, "--seed", "of the random numbers of scenes that use them (default 1)",
             [&](uint64_t value) { options.seed = value; });
+}
+
+void AddShrinkOptions(CLI::App& app, ShrinkOptions& options) {
+    CLI::Option* speed = AddReal(app, "--speed", 0, 1e9, "it fails if a body is faster than this, m/s",
+                                 [&](double value) { options.speed = value; });
+    CLI::Option* below = AddReal(app, "--below", -1e9, 1e9, "it fails if a dynamic body is below this height, m",
+                                 [&](double value) { options.below = value; });
+    CLI::Option* differs =
+        app.add_flag("--differs", options.differs, "it fails if one thread and several give different bits");
+    CLI::Option* crashes = app.add_flag("--crashes", options.crashes, "it fails if the program dies; with one thread");
+    speed->excludes(below)->excludes(differs)->excludes(crashes);
+    below->excludes(differs)->excludes(crashes);
+    differs->excludes(crashes);
+    AddText(app, "--out", "the smaller recording (default: FILE with .small before its ending)",
+            [&](const std::string& text) { options.out = text; })
+        ->type_name("FILE");
 }
 
 // An error that names what was probably meant.
@@ -186,12 +209,22 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
                [&](int value) { command.count = value; });
     AddOntoOptions(*drop, command);
     AddRunOptions(*drop, command.options);
+    CLI::App* replay =
+        app.add_subcommand("replay", "play recorded calls again; finds the first step and body that differ");
+    replay->add_option("file", file, "of CallRecorder::ToFile, or of run --calls")->type_name("FILE");
+    AddThreads(*replay, command.options);
+    CLI::App* shrink = app.add_subcommand("shrink",
+                                          "find fewer bodies and steps in recorded calls that still fail: by default, "
+                                          "that freeze a body since it is not finite");
+    shrink->add_option("file", file, "of CallRecorder::ToFile, or of run --calls")->type_name("FILE");
+    AddShrinkOptions(*shrink, command.shrink);
+    AddThreads(*shrink, command.options);
     CLI::App* list = app.add_subcommand("list", "list the scenes");
     bool wantsVersion = false;
     app.add_flag("--version", wantsVersion, "the version, its commit, compiler and lanes");
     if (!arguments.empty() && arguments[0] == "help") {
         arguments.erase(arguments.begin());
-        const std::vector<std::string> names{"run", "export", "drop", "list"};
+        const std::vector<std::string> names{"run", "export", "drop", "replay", "shrink", "list"};
         if (!arguments.empty() && std::find(names.begin(), names.end(), arguments[0]) == names.end())
             return UnknownName("command", arguments[0], names);
         arguments.push_back("--help");
@@ -226,6 +259,13 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
         if (file.empty())
             return Error{ErrorCode::OutOfRange, "drop needs a mesh file, for example: ./fulcrum drop teapot.obj"};
         command.scene = command.onto.empty() ? &DropScene::kScene : &DropOntoScene::kScene;
+        command.file = file;
+    } else if (replay->parsed() || shrink->parsed()) {
+        command.kind = replay->parsed() ? CommandKind::Replay : CommandKind::Shrink;
+        if (file.empty())
+            return Error{ErrorCode::OutOfRange, std::string(replay->parsed() ? "replay" : "shrink") +
+                                                    " needs a file of recorded calls, for example of ./fulcrum run "
+                                                    "pyramid --calls pyramid.calls"};
         command.file = file;
     } else if (list->parsed()) {
         command.kind = CommandKind::List;

@@ -1,5 +1,5 @@
-// The command line options of `fulcrum run`, `drop`, `list`, `help` and `--version`. Read by Main.cpp; pure function of
-// the arguments.
+// The command line options of `fulcrum run`, `export`, `drop`, `replay`, `shrink`, `list`, `help` and `--version`. Read
+// by Main.cpp; pure function of the arguments.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -28,6 +28,7 @@ struct RunOptions {
     bool recordHtml = true, recordGlb = true;
     std::filesystem::path json;         // empty: none
     std::filesystem::path out = "out";  // folder of what is recorded
+    std::filesystem::path calls;        // --calls; empty: none
     bool isQuiet = false;               // nothing is said but what goes wrong
     uint64_t seed = 1;
 
@@ -35,17 +36,25 @@ struct RunOptions {
     int StepsOf(const Scene& scene) const;
 };
 
-enum class CommandKind { Help, Version, List, Run, RunFile, Export, Drop };
+enum class CommandKind { Help, Version, List, Run, RunFile, Export, Drop, Replay, Shrink };
+
+// What a program is shrunk for, see Physics/Recording/Shrink.h.
+struct ShrinkOptions {
+    std::optional<double> speed, below;     // m/s, m
+    bool differs = false, crashes = false;  // none of them: a frozen body
+    std::filesystem::path out;              // empty: beside the recording
+};
 
 struct Command {
     CommandKind kind = CommandKind::Help;
     std::string help;              // Help
     const Scene* scene = nullptr;  // Run, Export, Drop
-    std::filesystem::path file;    // RunFile, Export, Drop
+    std::filesystem::path file;    // RunFile, Export, Drop, Replay, Shrink
     int count = 50;                // Drop
     std::filesystem::path onto;    // Drop; empty: onto a floor
     MeshImportSettings ontoSettings;
-    RunOptions options;  // Run, RunFile, Drop
+    RunOptions options;  // Run, RunFile, Drop; threads also of Replay and Shrink
+    ShrinkOptions shrink;
 };
 
 // Arguments without the program's name. Error OutOfRange: one line that says what is wrong and what was probably meant.

@@ -29,6 +29,7 @@ Result<std::unique_ptr<SceneWorld>> SceneWorld::Create(const Scene& scene, const
 
     std::unique_ptr<SceneWorld> world(new SceneWorld(scene, input));
     world->system_ = std::move(system.Value());
+    if (input.created) input.created(*world->system_);
     scene.build(*world);
     if (world->firstError_) return *world->firstError_;
     return world;

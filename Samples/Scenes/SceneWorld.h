@@ -33,6 +33,7 @@ struct SceneInput {
     double gravityScale = 1;       // times the scene's gravity
     bool keepsSettings = false;    // whether the world remembers what Add, Join and AddRagdoll were given
     const SceneDescription* description = nullptr;  // of a scene from a file
+    Function<void(PhysicsSystem&)> created{};       // called when the system is created and still empty
 };
 
 class SceneWorld {

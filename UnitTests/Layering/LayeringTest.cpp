@@ -42,13 +42,15 @@ const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
     {"Physics", {"Physics/World", "Physics/Joints", "Physics/Stages", "Physics/Queries", "Physics/Snapshots"}},
     {"Physics/Ragdoll", {"Physics", "Physics/Joints"}},
     {"Physics/Fields", {"Physics"}},
+    {"Physics/Recording", {"Physics", "Physics/Joints"}},
 };
 // Headers that the parts below may include, too: plain data, what users derive from, checks of what they pass in. They
 // include nothing else of Physics.
-const std::array<std::string, 12> kSharedHeaders = {
-    "Physics/Settings.h",    "Physics/JointSettings.h", "Physics/GroupFilter.h", "Physics/ContactListener.h",
-    "Physics/SensorEvent.h", "Physics/StepEvents.h",    "Physics/StepReport.h",  "Physics/QueryTypes.h",
-    "Physics/Misuse.h",      "Physics/Validation.h",    "Physics/Snapshot.h",    "Physics/StepObserver.h",
+const std::array<std::string, 13> kSharedHeaders = {
+    "Physics/Settings.h",     "Physics/JointSettings.h", "Physics/GroupFilter.h", "Physics/ContactListener.h",
+    "Physics/SensorEvent.h",  "Physics/StepEvents.h",    "Physics/StepReport.h",  "Physics/QueryTypes.h",
+    "Physics/Misuse.h",       "Physics/Validation.h",    "Physics/Snapshot.h",    "Physics/StepObserver.h",
+    "Physics/CallObserver.h",
 };
 
 const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision", "Constraints", "Physics"};

@@ -1,31 +1,16 @@
-// The fields of all settings, each once, for reading, writing and the schema alike. An archive has
+// The fields of all settings, each once: for files of scenes, their schema, and recordings of calls. An archive has
 //   Field(name, value)            a number, vector, text, shape, another structure or an optional one
 //   Choice(name, value, names)    an enumeration by the names of its values, in their order
 // No state.
 #pragma once
 
-#include <Fulcrum/Assets/SceneDescription.h>
+#include <Fulcrum/Physics/Joints/JointKinds.h>
+#include <Fulcrum/Physics/Settings.h>
 
 #include <array>
 
 namespace fulcrum {
 
-// An error whose message begins with the path of what is wrong.
-inline Error WrongAt(const std::string& path, const std::string& what) {
-    return {ErrorCode::Unsupported, (path.empty() ? "the document" : path) + ": " + what};
-}
-
-// The names of the kinds of a variant of joint settings, in its order.
-template <class Joint>
-inline constexpr std::array<const char*, 0> kJointKindNames{};
-template <>
-inline constexpr std::array kJointKindNames<RagdollJoint> = {"Point", "Fixed", "Hinge", "Cone", "SwingTwist", "SixDof"};
-template <>
-inline constexpr std::array kJointKindNames<AnyJointSettings> = {
-    "Point",  "Fixed", "Distance",      "Hinge",  "Slider", "Cone", "SwingTwist",
-    "SixDof", "Gear",  "RackAndPinion", "Pulley", "Path",   "Wheel"};
-static_assert(kJointKindNames<RagdollJoint>.size() == std::variant_size_v<RagdollJoint>);
-static_assert(kJointKindNames<AnyJointSettings>.size() == std::variant_size_v<AnyJointSettings>);
 inline constexpr std::array kMotionNames = {"Static", "Kinematic", "Dynamic"};
 inline constexpr std::array kCombineRuleNames = {"GeometricMean", "Average", "Minimum", "Multiply", "Maximum"};
 

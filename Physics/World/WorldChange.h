@@ -1,0 +1,41 @@
+// Exclusive access to the world for a call of the public interface, which the observer of calls then sees. The first
+// line of each function that changes the world:
+//     const WorldChange<&BodyInterface::SetLayer> change(world_, id, layer);
+//     if (change.Refusal()) return *change.Refusal();
+// Calls made of other public calls have none: the observer sees those.
+#pragma once
+
+#include <Fulcrum/Physics/CallObserver.h>
+#include <Fulcrum/Physics/World/WorldState.h>
+
+#include <type_traits>
+
+namespace fulcrum {
+
+template <auto kFunction>
+class WorldChange : public WorldLock::Exclusive {
+public:
+    template <class... Arguments>
+    explicit WorldChange(WorldState& world, const Arguments&... arguments)
+        : Exclusive(world.lock), observer_(world.callObserver) {
+        static_assert(std::is_same_v<CallArguments<kFunction>, std::tuple<Arguments...>>,
+                      "all arguments of the call, in their order");
+        if (!observer_ || Refusal()) [[likely]]
+            return;
+        const void* const addresses[] = {&arguments...};
+        observer_->BeginCall(&kCallTag<kFunction>, addresses);
+    }
+    // For what the call creates, on the way to the caller.
+    template <class Value>
+    Result<Value> Created(Result<Value> result) const {
+        static_assert(std::is_same_v<Value, CallResult<kFunction>>);
+        if (observer_ && result) [[unlikely]]
+            observer_->NoteCreated(&result.Value());
+        return result;
+    }
+
+private:
+    CallObserver* observer_;
+};
+
+}  // namespace fulcrum
