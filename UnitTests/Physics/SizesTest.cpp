@@ -57,6 +57,7 @@ BatchTime TimeOfBatch(int count) {
 
 TEST(Sizes, AHundredThousandBodiesAreCreatedAtOnce) {
     const BatchTime small = TimeOfBatch(Cases(10'000)), large = TimeOfBatch(Cases(100'000));
+    if (kIsSanitized) return;  // the sort does not allocate
     // 33 ms where the sort takes 53.
     EXPECT_LT(large.batch, 2 * large.sort);
     // In proportion: what does not fit a cache takes three times as long for each body.
@@ -85,7 +86,7 @@ double TimeOfBallsOn(int statics, int actives) {
 TEST(Sizes, AMillionStaticBodiesAndTenThousandActiveOnesRun) {
     const int statics = Cases(1'000'000), actives = Cases(10'000);
     const double few = TimeOfBallsOn(actives, actives), many = TimeOfBallsOn(statics, actives);
-    EXPECT_LT(many, 3 * few);  // what does not move is no work
+    EXPECT_TRUE(kIsSanitized || many < 3 * few) << many << " s, " << few;  // what does not move is no work
 }
 
 // ---- Ids. The counter of an index has 32 bits; these begin shortly before its end.
