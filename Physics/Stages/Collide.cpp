@@ -3,9 +3,9 @@
 // body penetrates another before a contact exists. It covers all directions, since bodies that are hit are deflected
 // and rotated.
 #include <Fulcrum/Collision/Shapes/Plane.h>
-#include <Fulcrum/Math/ForceInline.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/Stages/PrefetchLines.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
@@ -144,8 +144,7 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     return LookAtContact(stores, index, view.bInA, findings);
 }
 
-// Prefetches data of the next pairs while this one is collided. Inlined at once: GCC drops calls of functions that do
-// nothing else.
+// Prefetches data of the next pairs while this one is collided.
 FULCRUM_FORCE_INLINE void PrefetchAhead(const CollideStores& stores, uint32_t index) {
     constexpr uint32_t kAhead = 6;
     if (index + kAhead >= stores.pairs.pairs.size()) return;
@@ -156,8 +155,7 @@ FULCRUM_FORCE_INLINE void PrefetchAhead(const CollideStores& stores, uint32_t in
     }
     if (pair.contact == PairStore::kNone) return;
     __builtin_prefetch(&stores.pairs.contacts[pair.contact]);
-    const char* record = reinterpret_cast<const char*>(&stores.pairs.records[pair.contact]);
-    for (size_t line = 0; line < sizeof(ContactRecord); line += 64) __builtin_prefetch(record + line);
+    PrefetchLines(&stores.pairs.records[pair.contact], sizeof(ContactRecord));
 }
 
 void CollideAllActive(const CollideStores& stores, std::vector<PairChange>& changes, const StepWorkers& workers) {

@@ -1,6 +1,6 @@
 // Fills the rows of all batches.
-#include <Fulcrum/Math/ForceInline.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/PrefetchLines.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -26,12 +26,10 @@ void NoteDeepest(const PairStore& pairs, const ContactBatch<N, kFixedB>& batch, 
     }
 }
 
-// Prefetches records and masses of the next contacts. Inlined at once: GCC drops calls of functions that do nothing
-// else.
+// Prefetches records and masses of the next contacts.
 FULCRUM_FORCE_INLINE void Prefetch(const BodyStore& bodies, const PairStore& pairs, std::span<const Entry> entries) {
     for (const Entry& entry : entries) {
-        const char* record = reinterpret_cast<const char*>(&pairs.records[entry.constraint]);
-        for (size_t line = 0; line < sizeof(ContactRecord); line += 64) __builtin_prefetch(record + line);
+        PrefetchLines(&pairs.records[entry.constraint], sizeof(ContactRecord));
         for (uint32_t body : {entry.bodyA, entry.bodyB}) {
             __builtin_prefetch(&bodies.poses[body]);
             __builtin_prefetch(&bodies.masses[body]);

@@ -12,6 +12,7 @@
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
+#include <Fulcrum/Physics/Stages/PrefetchLines.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -51,8 +52,7 @@ struct Phase {
 // Prefetches the next batch while this one is solved.
 FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) {
     using Batch = ContactBatch<kLanes, false>;
-    const char* bytes = reinterpret_cast<const char*>(&batch);
-    for (size_t line = 0; line < offsetof(Batch, restitution); line += 64) __builtin_prefetch(bytes + line);
+    PrefetchLines(&batch, offsetof(Batch, restitution));
 }
 template <class Batch>
 FULCRUM_FORCE_INLINE void Prefetch(const Batch&) {}
