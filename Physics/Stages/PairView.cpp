@@ -1,7 +1,7 @@
 #include <Fulcrum/Physics/Stages/PairView.h>
 
 #include <Fulcrum/Collision/Shapes/Plane.h>
-#include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
@@ -132,14 +132,14 @@ Twist<float> DisplacementOf(const CollideStores& stores, uint32_t body) {
     return {Vector3(moved[0], moved[1], moved[2]), Vector3(turned[0], turned[1], turned[2])};
 }
 
-// Whether one of two bodies rotates so far in the step that it will collide again within it (Recollide.h).
-bool WillRotateFar(const CollideStores& stores, const Pair& pair) {
-    const auto rotatesFar = [&](uint32_t body, const Shape& shape) {
-        const float dt = stores.step.dt, inner = shape.InnerRadius();
-        return LengthSquared(stores.bodies.AngularVelocityOf(body)) * dt * dt * shape.OuterRadius() >
-               2 * kMostDeviation * inner;
+// Whether one of two bodies rotates so far in the step that it will collide again within it (Recollide.h). Beyond a
+// radian the points of the first substep would be far from the truth.
+bool WillCollideAgain(const CollideStores& stores, const Pair& pair) {
+    const auto will = [&](uint32_t body, const Shape& shape) {
+        const float dt = stores.step.dt, square = LengthSquared(stores.bodies.AngularVelocityOf(body)) * dt * dt;
+        return square * shape.OuterRadius() > 2 * kMostDeviation * shape.InnerRadius() && square < 1;
     };
-    return rotatesFar(pair.bodyA, *pair.shapeA) || (!pair.fixedB && rotatesFar(pair.bodyB, *pair.shapeB));
+    return will(pair.bodyA, *pair.shapeA) || (!pair.fixedB && will(pair.bodyB, *pair.shapeB));
 }
 
 // Clears the manifold.
@@ -154,7 +154,10 @@ void Forget(Pair& pair, ContactRecord& record) {
 Quaternion CollideStores::RotationOf(uint32_t body) const {
     const Quaternion before = bodies.RotationOf(body);
     if (elapsed == 0) return before;
-    return Normalized(RotationFromVector(DisplacementOf(*this, body).angular) * before);
+    const Vector3 turned = DisplacementOf(*this, body).angular;
+    const Vec2<float> half = HalfTurnOf<float>(turned);
+    return Normalized(Quaternion{turned.x() * half.x(), turned.y() * half.x(), turned.z() * half.x(), half.y()} *
+                      before);
 }
 
 Vector3 CollideStores::OffsetOf(uint32_t bodyA, uint32_t bodyB) const {
@@ -251,7 +254,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
     // Speeds at the start of the step do not tell which points of fast rotating bodies may touch.
-    const bool keepsAll = stores.elapsed > 0 || WillRotateFar(stores, pair);
+    const bool keepsAll = stores.elapsed > 0 || WillCollideAgain(stores, pair);
     const float farEnd = FarEndFactor(stores.coloring, pair),
                 speculative = SpeculativeDistance(stores.step.settings, pair);
     int count = 0;
@@ -275,6 +278,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
             if (oldFeatures[j] == found.feature) record.impulse[count] = oldImpulses[j];
         contact.features[count++] = found.feature;
     }
+    std::fill(record.impulse + count, record.impulse + ContactRecord::kMaxPoints, 0.0f);
     record.pointCount = static_cast<float>(count);
     pair.pointCount = static_cast<uint8_t>(count);
     if (oldCount == 0) ForgetFriction(record);
