@@ -200,8 +200,9 @@ bool HardlyMoved(const PairView& v, const PairContact& contact) {
     const Quaternion& a = v.bInA.rotation;
     const Quaternion& b = old.rotation;
     const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
-    const float angle = IsRound(*v.pair.shapeA) || IsRound(*v.pair.shapeB) ? kKeptAngleOfRound : kKeptAngle;
-    return LengthSquared(d) <= 0.25f * angle * angle;
+    const float squared = 4 * LengthSquared(d);
+    if (squared <= kKeptAngleOfRound * kKeptAngleOfRound) return true;
+    return squared <= kKeptAngle * kKeptAngle && !IsRound(*v.pair.shapeA) && !IsRound(*v.pair.shapeB);
 }
 
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {
