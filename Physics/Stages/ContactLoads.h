@@ -46,10 +46,10 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
 // Levels of joint errors assume that the gap is proportional to the square of the substep; if it is not, the efforts
 // converge in a few rounds.
 struct GapScale {
-    float target;        // m: AccuracyTarget::jointError
-    float drift;         // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
-    float impulseScale;  // substep of the batch / that of the system's settings
-    uint8_t stiffness;   // see LoadLevel
+    float target;         // m: AccuracyTarget::jointError
+    float drift;          // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
+    float impulseScale;   // substep of the batch / that of the system's settings
+    uint8_t stiffness;    // see LoadLevel
     uint8_t stepsOfLoad;  // as SinkScale::stepsOfLoad
     bool forgets;         // as SinkScale::forgets
 

@@ -22,8 +22,8 @@ struct Ending {
     FreeTurn turn;                           // free rotation, if any
     bool fliesFreely = false;                // no contacts or joints
     bool isJointed = false;
-    float slowSpeed = 0;                     // m/s, see SlowSpeed
-    float pulled = 0;                        // m/s, see PulledSpeed
+    float slowSpeed = 0;  // m/s, see SlowSpeed
+    float pulled = 0;     // m/s, see PulledSpeed
 };
 
 // A body without contacts and joints: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether its

@@ -17,8 +17,8 @@ namespace {
 constexpr float kKeptDistance = 1e-3f;  // m, but at most this fraction of the smaller body's size:
 constexpr float kKeptFraction = 2e-3f;
 constexpr float kKeptAngle = 1e-3f;  // rad
-// Normals rotate with body A. Of what rolls they would lean forward until the manifold is found anew, so that slow balls
-// would accelerate on a level floor.
+// Normals rotate with body A. Of what rolls they would lean forward until the manifold is found anew, so that slow
+// balls would accelerate on a level floor.
 constexpr float kKeptAngleOfRound = 2e-5f;
 
 // Impulses are kept for warm starting if the cosine of the angle between the normals of two steps is at least this.

@@ -249,7 +249,8 @@ TEST(Rest, AStackOutOfLineStandsWhileStepsAlternate) {
                     world.Step(i / steps.each % 2 == 0 ? steps.shorter : steps.longer);
                 for (size_t i = 0; i < stack.size(); ++i)
                     EXPECT_LT((world.PositionOf(stack[i]) - starts[i]).norm(), 0.02)
-                        << substeps << " substeps, " << boxes << " boxes, " << steps.longer << " s, each " << steps.each << ", " << i;
+                        << substeps << " substeps, " << boxes << " boxes, " << steps.longer << " s, each " << steps.each
+                        << ", " << i;
             }
 }
 
