@@ -135,7 +135,7 @@ float PulledSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) 
 bool IsAtRest(const BodyStore& bodies, const Ending& ending, const SleepSettings& sleep) {
     const BodyDynamics& d = *ending.turn.body;
     const float* a = bodies.poses[ending.body].acceleration;
-    return d.slowSeconds >= sleep.seconds && !ending.fliesFreely && !ending.isJointed &&
+    return d.slowSeconds > 0 && d.slowSeconds >= sleep.seconds && !ending.fliesFreely && !ending.isJointed &&
            d.motion == MotionType::Dynamic && (a[0] != 0 || a[1] != 0 || a[2] != 0);
 }
 // Contacts hardly damp the slow modes of stacks (Docs/Step.md): what rests is damped while it decelerates, so that a
