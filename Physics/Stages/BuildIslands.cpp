@@ -206,8 +206,10 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
         for (auto& group : groups)
             if (group.stiffness < group.wantedStiffness) ++group.stiffness;
     };
-    stiffen(layout.groups);
-    stiffen(saved.groups);
+    if (step.number % StepsFor(1, step) == 0) {
+        stiffen(layout.groups);
+        stiffen(saved.groups);
+    }
     if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion) return;
     layout.version = coloring.Version();
     layout.loadVersion = pairs.loadVersion;

@@ -17,9 +17,23 @@ namespace {
 constexpr float kKeptDistance = 1e-3f;  // m, but at most this fraction of the smaller body's size:
 constexpr float kKeptFraction = 2e-3f;
 constexpr float kKeptAngle = 1e-3f;  // rad
+// Normals rotate with body A. Of what rolls they would lean forward until the manifold is found anew, so that slow
+// balls would accelerate on a level floor.
+constexpr float kKeptAngleOfRound = 2e-5f;
 
 // Impulses are kept for warm starting if the cosine of the angle between the normals of two steps is at least this.
 constexpr float kSameNormal = 0.5f;
+
+bool IsRound(const Shape& shape) {
+    switch (shape.Type()) {
+        case ShapeType::Sphere:
+        case ShapeType::Capsule:
+        case ShapeType::TaperedCapsule:
+        case ShapeType::Cylinder:
+        case ShapeType::Custom: return true;
+        default: return false;
+    }
+}
 
 // Points are stored relative to the bodies, the narrow phase computes them relative to the shapes.
 Vector3 ToBody(const CollideStores& stores, const Pair& pair, uint32_t collider, const Vector3& point) {
@@ -189,7 +203,9 @@ bool HardlyMoved(const PairView& v, const PairContact& contact) {
     const Quaternion& a = v.bInA.rotation;
     const Quaternion& b = old.rotation;
     const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
-    return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
+    const float squared = 4 * LengthSquared(d);
+    if (squared <= kKeptAngleOfRound * kKeptAngleOfRound) return true;
+    return squared <= kKeptAngle * kKeptAngle && !IsRound(*v.pair.shapeA) && !IsRound(*v.pair.shapeB);
 }
 
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Stages/Step.h>
 
+#include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/StepObserver.h>
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
@@ -170,8 +171,8 @@ constexpr double kShortestStep = 1e-9;
 // between 1/240 and 1/30 s would drift by some centimeters, as each long step begins with a quarter of its load.
 constexpr float kMostImpulseScale = 2, kMostContactImpulseScale = 8;
 
-// Fraction of the last step's stiffnessDt that a shorter step keeps at least.
-constexpr float kStiffnessDecay = 0.95f;
+// 1/s: rate at which stiffnessDt decreases at most when steps become shorter, by 5 % in 1/60 s.
+constexpr float kStiffening = 3.0776f;
 
 StepContext ContextOf(const WorldState& world, const StepState& last, double dt) {
     const float substepDt = static_cast<float>(dt) / static_cast<float>(world.settings.solver.substeps);
@@ -185,7 +186,7 @@ StepContext ContextOf(const WorldState& world, const StepState& last, double dt)
             .impulseScale = std::min(longer, kMostImpulseScale),
             .contactImpulseScale = std::min(longer, kMostContactImpulseScale),
             // With the stiffness that short steps allow, bodies that sank during long ones would be thrown apart.
-            .stiffnessDt = std::max(substepDt, kStiffnessDecay * last.stiffnessDt),
+            .stiffnessDt = std::max(substepDt, Exp(-kStiffening * static_cast<float>(dt)) * last.stiffnessDt),
             .softness = SoftnessOf(world.settings, substepDt)};
 }
 
