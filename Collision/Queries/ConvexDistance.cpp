@@ -1,17 +1,38 @@
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
 
+#include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
+#include <Fulcrum/Collision/Queries/CoreShapes.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace fulcrum {
 
 namespace {
 
+std::optional<Polyhedron> PolyhedralCoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
+    if (HasPolyhedralCore(shape.Type())) return CoreOf(shape, storage);
+    if (const auto* triangle = dynamic_cast<const TriangleCore*>(&shape))
+        return CoreOf(triangle->Corners(), triangle->Normal(), 0, storage);
+    return std::nullopt;
+}
+
+// Of two polyhedra, one of them with faces, the axis of least depth by the separating axis test.
+std::optional<Vector3> PolyhedralAxis(const SupportPair& pair, const RelativePose& bInA) {
+    PolyhedronStorage storageA, storageB;
+    const std::optional<Polyhedron> a = PolyhedralCoreOf(pair.a, storageA);
+    if (!a) return std::nullopt;
+    const std::optional<Polyhedron> b = PolyhedralCoreOf(pair.b, storageB);
+    if (!b || a->faceCount + b->faceCount == 0) return std::nullopt;
+    return SearchAllAxes(PolyhedronPair(*a, *b, bInA)).axis;
+}
+
 // The axis of least depth of overlapping cores. For a flat or pointed core, such as a triangle or a segment, EPA may
-// fail: then libccd's axis or the center line is used, whichever has less depth.
+// fail. Then polyhedra are tested along all their axes: of two triangles libccd's EPA takes milliseconds, and there may
+// be thousands of pairs. For others libccd's axis or the center line is used, whichever has less depth.
 Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
@@ -45,6 +66,10 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
         const Vector3 face = Vec3<Real>(normal * (1 / length)).template cast<float>();
         consider(face);
         consider(-face);
+    }
+    if (const std::optional<Vector3> found = PolyhedralAxis(pair, bInA)) {
+        consider(*found);
+        return axis;
     }
     for (const LibccdAlgorithm algorithm : {LibccdAlgorithm::Epa, LibccdAlgorithm::Mpr}) {
         const LibccdResult found = LibccdPenetration(pair.a, pair.b, bInA, 0, algorithm);
