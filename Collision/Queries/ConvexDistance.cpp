@@ -32,8 +32,9 @@ std::optional<Vector3> PolyhedralAxis(const SupportPair& pair, const RelativePos
 
 // The axis of least depth of overlapping cores. For a flat or pointed core, such as a triangle or a segment, EPA may
 // fail. Then polyhedra are tested along all their axes: of two triangles libccd's EPA takes milliseconds, and there may
-// be thousands of pairs. For others libccd's axis or the center line is used, whichever has less depth.
-Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
+// be thousands of pairs. For others libccd's axis or the center line is used, whichever has less depth; without libccd
+// if the depth is known to be less than `enough`, m.
+Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk, float enough) {
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
     // If the cores are far apart, GJK's simplex may contain the origin due to rounding. A separating plane proves that
@@ -71,6 +72,7 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
         consider(*found);
         return axis;
     }
+    if (depth < enough) return axis;
     for (const LibccdAlgorithm algorithm : {LibccdAlgorithm::Epa, LibccdAlgorithm::Mpr}) {
         const LibccdResult found = LibccdPenetration(pair.a, pair.b, bInA, 0, algorithm);
         if (found.status == LibccdResult::Status::Found) consider(Normalized(found.normal.cast<float>()));
@@ -132,7 +134,8 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
                                NarrowPhaseMethod method) {
     const SupportPair pair(a, b, bInA);
     if (method == NarrowPhaseMethod::Libccd) return MeasureByLibccd(pair, bInA, reach);
-    ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), reach + pair.RadiusSum());
+    const float reachOfCores = reach + pair.RadiusSum();
+    ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), std::max(reachOfCores, 0.0f));
     ConvexSeparation result;
     if (gjk.status == GjkStatus::BeyondReach) {
         result.isBeyond = true;
@@ -147,7 +150,7 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
         result.isBeyond = !(result.separation <= reach) || !IsFinite(result.onA) || !IsFinite(result.onB);
         return result;
     }
-    result.normal = AxisOfLeastDepth(pair, bInA, gjk);
+    result.normal = AxisOfLeastDepth(pair, bInA, gjk, -reachOfCores);
     result.separation = pair.SeparationAlong(result.normal) - pair.RadiusSum();
     FindDeepestPoints(pair, result);
     return result;

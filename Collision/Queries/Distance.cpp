@@ -51,8 +51,8 @@ public:
     // `ofBoxes`: the separation of their boxes. Pieces cannot overlap more deeply than these do.
     void Consider(const Piece& a, const Piece& b, const RelativePose& bInA, float ofBoxes) {
         const float rounding = RoundingOfDistances(std::max(a.shape.OuterRadius(), b.shape.OuterRadius()));
-        if (ofBoxes > limit_ + rounding) return;
-        const float reach = std::max(limit_, 0.0f) + rounding;
+        const float reach = limit_ + rounding;
+        if (ofBoxes > reach) return;
         const ConvexSeparation found = MeasureConvex(a.shape, b.shape, bInA, reach, method_);
         if (found.isBeyond) return;
         Consider(found.separation, Rotate(a.pose.rotation, found.normal), a.pose.Transform(found.onA),
