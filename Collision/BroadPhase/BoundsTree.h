@@ -84,7 +84,7 @@ public:
     void CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const;
     // The same for the leaves within `maxDistance` m of a box, nearer nodes first.
     template <class Visitor>
-    void VisitNear(const Bounds& box, float& maxDistance, Visitor&& visit) const;
+    void VisitNear(const Bounds& box, const float& maxDistance, Visitor&& visit) const;
 
     // A box around all leaves, tight after Optimize or Rebuild. Empty without leaves.
     Bounds TotalBounds() const;
