@@ -5,7 +5,8 @@ import { SELECTED, colorOf } from './colors.js';
 import { Glass, SENSOR } from './glass.js';
 import { isAlwaysTheSame } from './presence.js';
 import { GeometryChoice, halfBounds, leavesOf } from './shapes.js';
-import { addBelts, addGrid, growSmall } from './shaders.js';
+import { OPAQUE } from './occlusion.js';
+import { addBelts, addGrid, addOcclusion, growSmall } from './shaders.js';
 
 const RESTING_WITH_SHADOW_AT_MOST = 30000;
 const BRASS = 4; // of the looks
@@ -20,6 +21,7 @@ export class Bodies {
     this.brass = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: stage.isFine ? 0.32 : 0.45, metalness: stage.isFine ? 0.75 : 0.15, envMapIntensity: 1.6 }), stage.least);
     this.fixedMaterial = addBelts(addGrid(new MeshStandardMaterial({ vertexColors: true, roughness: 0.95 }), stage.grid), stage.clock);
     this.drivenMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.7 });
+    for (const material of [this.material, this.brass, this.fixedMaterial, this.drivenMaterial]) addOcclusion(material, stage.occlusion);
     this.glass = new Glass(stage);
     this.meshes = this.#build();
     for (const { mesh, motion } of this.meshes) {
@@ -37,7 +39,12 @@ export class Bodies {
       material.depthWrite = isSolid;
       material.needsUpdate = true;
     }
-    for (const group of this.meshes) if (group.motion < 2) group.mesh.castShadow = isSolid && group.castsShadow;
+    for (const { mesh, motion, castsShadow } of this.meshes) {
+      if (motion >= 2) continue;
+      mesh.castShadow = isSolid && castsShadow;
+      if (isSolid) mesh.layers.enable(OPAQUE);
+      else mesh.layers.disable(OPAQUE);
+    }
   }
 
   update(mode, top) {
@@ -104,6 +111,7 @@ export class Bodies {
     group.castsShadow = group.motion !== SENSOR && (group.moving > 0 || group.leaves.length < RESTING_WITH_SHADOW_AT_MOST);
     mesh.castShadow = group.castsShadow;
     mesh.receiveShadow = group.motion !== SENSOR;
+    if (group.motion !== SENSOR) mesh.layers.enable(OPAQUE);
     mesh.frustumCulled = false;
     mesh.boundingSphere = new Sphere(new Vector3(), Infinity); // picking asks each instance
     mesh.setColorAt(0, new Color());

@@ -7,14 +7,15 @@ const ISLANDS = ['#4f8fd8', '#e8935a', '#58b07c', '#d66a6a', '#8d7bd0', '#dcb345
   .map((hex) => new Color(hex));
 const SPEEDS = ['#86a3c8', '#4fa3cc', '#4fb890', '#dccb4c', '#f0963a', '#d63c2c'].map((hex) => new Color(hex));
 const ALONE = new Color('#aab2ba');
-const FIXED = new Color('#d3d9de'), DRIVEN = new Color('#9aa7b4');
+const FIXED = new Color(), DRIVEN = new Color();
 const GLASS = new Color('#3aa7c2');
 const AWAKE = new Color('#f0ab6b');
 const ASLEEP = new Color('#7d93aa');
-const FIXED_OF = { light: '#d3d9de', dark: '#414a54' }, DRIVEN_OF = { light: '#9aa7b4', dark: '#6d7a88' };
+export const GROUND = { light: '#d9dcde', dark: '#39414a' };
+const DRIVEN_OF = { light: '#9aa7b4', dark: '#6d7a88' };
 // Of what does not move by itself; colors of bodies that do are the same by day and night.
 export function setTheme(theme) {
-  FIXED.set(FIXED_OF[theme]);
+  FIXED.set(GROUND[theme]);
   DRIVEN.set(DRIVEN_OF[theme]);
 }
 export const SELECTED = new Color('#ff4d1c');
@@ -28,8 +29,14 @@ function ramp(colors, fraction, out) {
   return out.lerpColors(colors[low], colors[low + 1], at - low);
 }
 
-// Neighbors of one color are told apart by a little light.
-const shade = (color, body) => color.multiplyScalar(0.86 + 0.26 * scattered(body + 1));
+// Neighbors of one color are told apart by a little light, and by a warmer or cooler tone.
+function shade(color, body) {
+  const light = 0.84 + 0.3 * scattered(body + 1), warmth = 0.1 * (scattered(7 * body + 3) - 0.5);
+  color.r *= light * (1 + warmth);
+  color.g *= light;
+  color.b *= light * (1 - 2 * warmth);
+  return color;
+}
 
 // The speed that the scale ends at: 99 % of the moving samples are slower.
 export function topSpeed({ samples }) {

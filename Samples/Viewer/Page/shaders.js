@@ -1,5 +1,5 @@
-// Additions to three's standard material: a grid, belts that run, and a least size. Each changes the shader once; they can be
-// combined.
+// Additions to three's standard material: a grid, belts that run, a least size, ambient occlusion. Each changes the shader once; they
+// can be combined.
 
 function extend(material, change) {
   const before = material.onBeforeCompile;
@@ -41,7 +41,7 @@ export function addGrid(material, grid) {
         if (gridUp > 0.99) {
           vec2 place = gridPlace.xz / gridCell;
           float line = max(0.5 * gridLine(place, 1.0), gridLine(place / 10.0, 1.3));
-          diffuseColor.rgb *= 1.0 - 0.3 * gridStrength * line;
+          diffuseColor.rgb *= 1.0 - 0.22 * gridStrength * line;
         }`);
   });
 }
@@ -80,7 +80,24 @@ export function growSmall(material, least) {
       .replace('#include <begin_vertex>', `#include <begin_vertex>
         #ifdef USE_INSTANCING
           float leastHalf = leastSize * max(0.0, -(modelViewMatrix * instanceMatrix * vec4(0.0, 0.0, 0.0, 1.0)).z);
-          transformed *= max(vec3(1.0), vec3(leastHalf) / max(halfSize, vec3(1e-6)));
+          // What has no size given keeps its own.
+          if (halfSize != vec3(0.0)) transformed *= max(vec3(1.0), vec3(leastHalf) / max(halfSize, vec3(1e-6)));
         #endif`);
+  });
+}
+
+// Takes from the light of all sides what the surroundings hide, where there is an Occlusion.
+export function addOcclusion(material, occlusion) {
+  if (!occlusion) return material;
+  return extend(material, (shader) => {
+    Object.assign(shader.uniforms, occlusion.uniforms);
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', `#include <common>
+        uniform sampler2D occlusionMap;
+        uniform vec2 occlusionPixel;`)
+      .replace('#include <aomap_fragment>', `#include <aomap_fragment>
+        float seenSky = texture2D(occlusionMap, gl_FragCoord.xy * occlusionPixel).r;
+        reflectedLight.indirectDiffuse *= seenSky;
+        reflectedLight.indirectSpecular *= seenSky;`);
   });
 }
