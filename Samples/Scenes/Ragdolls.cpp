@@ -28,7 +28,7 @@ extern const Scene kScene{
     .sleeping = false,
     .isClosed = true,
     .accuracyRuns = 8,
-    .view = {.color = ColorMode::Plain, .lower = {-14, 0, -10}, .upper = {9, 12, 10}, .picture = 0.6},
+    .view = {.color = ColorMode::Plain, .lower = {-9, 3, -9}, .upper = {9, 14, 9}, .picture = 0.3},
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint",

@@ -12,21 +12,23 @@ function extend(material, change) {
   return material;
 }
 
-const PLACE_VARYINGS = '#include <common>\nvarying vec3 gridPlace; varying float gridUp;';
+const PLACE_VARYINGS = '#include <common>\nvarying vec3 gridPlace, gridNormal; varying float gridSlopes;';
 
-// Lines every `cell` meters, and stronger ones every ten cells, on what faces upwards.
+// Lines every `cell` meters, and stronger ones every ten cells, on what is level, and on slopes of instances whose attribute
+// `gridSlope` is 1.
 export function addGrid(material, grid) {
   return extend(material, (shader) => {
     Object.assign(shader.uniforms, grid);
     shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', PLACE_VARYINGS)
+      .replace('#include <common>', `${PLACE_VARYINGS} attribute float gridSlope;`)
       .replace('#include <project_vertex>', `#include <project_vertex>
         mat4 gridFrame = modelMatrix;
         #ifdef USE_INSTANCING
           gridFrame = gridFrame * instanceMatrix;
         #endif
         gridPlace = (gridFrame * vec4(transformed, 1.0)).xyz;
-        gridUp = normalize(mat3(gridFrame) * objectNormal).y;`);
+        gridSlopes = gridSlope;
+        gridNormal = normalize(mat3(gridFrame) * objectNormal);`);
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', `${PLACE_VARYINGS}
         uniform float gridCell, gridStrength;
@@ -38,10 +40,11 @@ export function addGrid(material, grid) {
           return (1.0 - min(min(far.x, far.y), 1.0)) * fade;
         }`)
       .replace('#include <color_fragment>', `#include <color_fragment>
-        if (gridUp > 0.99) {
-          vec2 place = gridPlace.xz / gridCell;
+        if (gridNormal.y > (gridSlopes > 0.5 ? 0.6 : 0.99)) {
+          vec3 across = normalize(cross(gridNormal, vec3(0.0, 0.0, 1.0)));
+          vec2 place = vec2(dot(gridPlace, across), dot(gridPlace, cross(across, gridNormal))) / gridCell;
           float line = max(0.5 * gridLine(place, 1.0), gridLine(place / 10.0, 1.3));
-          diffuseColor.rgb *= 1.0 - 0.22 * gridStrength * line;
+          diffuseColor.rgb *= 1.0 - 0.17 * gridStrength * line;
         }`);
   });
 }

@@ -12,7 +12,7 @@ import { cornersOf } from './subject.js';
 
 // `sun`, `fill`: of the two lamps; `ambient`: of the light from all sides, from an environment or without one.
 const THEMES = {
-  light: { horizon: '#e9ebeb', zenith: '#a3bfdb', ground: GROUND.light, sun: 3.1, fill: 0.35, ambient: [0.6, 1.3] },
+  light: { horizon: '#e9ebeb', zenith: '#a3bfdb', ground: GROUND.light, sun: 3.1, fill: 0.35, ambient: [0.5, 1.3] },
   dark: { horizon: '#20262e', zenith: '#0a0e14', ground: GROUND.dark, sun: 2.5, fill: 0.5, ambient: [2.2, 0.75] },
 };
 const LIGHT_DIRECTION = new Vector3(-0.55, 1, 0.62).normalize();
@@ -27,12 +27,13 @@ function nameOfRenderer(context) {
 
 export class Stage {
   // `subject`: what findSubject returns; without `places` its box is to be in the picture.
-  // `isFine`: with reflections of an environment, which software takes ten seconds to prepare, and ambient occlusion; undefined: where
-  // a GPU draws.
-  constructor(canvas, subject, isFine) {
+  // `isFine`: lit by an environment, which software takes ten seconds to prepare; `isOccluded`: with ambient occlusion, which software
+  // takes a second a picture for. Undefined: where a GPU draws.
+  constructor(canvas, subject, isFine, isOccluded) {
     this.subject = subject;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
-    this.isFine = isFine ?? !/swiftshader|llvmpipe|software/i.test(nameOfRenderer(this.renderer.getContext()));
+    const isSoftware = /swiftshader|llvmpipe|software/i.test(nameOfRenderer(this.renderer.getContext()));
+    this.isFine = isFine ?? !isSoftware;
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
@@ -51,7 +52,7 @@ export class Stage {
     this.least = { leastSize: { value: 0 } };
     this.clock = { seconds: { value: 0 } };
     this.height = 1;
-    if (this.isFine) this.occlusion = new Occlusion(this.scene, this.camera, this.least);
+    if (isOccluded ?? !isSoftware) this.occlusion = new Occlusion(this.scene, this.camera, this.least);
     this.setTheme('light');
   }
 
@@ -65,14 +66,16 @@ export class Stage {
     this.ground?.material.color.set(ground);
     this.sun.intensity = sun;
     this.fill.intensity = fill;
-    if (this.isFine) {
-      this.environment?.dispose();
-      this.environment = makeEnvironment(this.renderer, { ...this.skyColors, ground }, LIGHT_DIRECTION);
-      this.scene.environment = this.environment.texture;
-      this.scene.environmentIntensity = ambient[0];
-    } else {
-      this.skyLight.intensity = ambient[1];
-    }
+    this.isEnvironmentOld = this.isFine;
+    if (this.isFine) this.scene.environmentIntensity = ambient[0];
+    else this.skyLight.intensity = ambient[1];
+  }
+
+  #renewEnvironment() {
+    this.isEnvironmentOld = false;
+    this.environment?.dispose();
+    this.environment = makeEnvironment(this.renderer, { ...this.skyColors, ground: THEMES[this.themeName].ground }, LIGHT_DIRECTION);
+    this.scene.environment = this.environment.texture;
   }
 
   // A ground without an end at a height, which fades into the horizon.
@@ -152,6 +155,7 @@ export class Stage {
     this.scene.fog.near = distance + 2 * radius;
     this.scene.fog.far = distance + 18 * radius;
     this.least.leastSize.value = (LEAST_PIXELS * 2 * Math.tan((this.camera.fov * Math.PI) / 360)) / this.height;
+    if (this.isEnvironmentOld) this.#renewEnvironment();
     this.occlusion?.update(this.renderer, this.subject.typical, distance);
     this.renderer.render(this.scene, this.camera);
   }
@@ -168,7 +172,7 @@ export class Stage {
     const reach = 1.35 * radius;
     Object.assign(sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: radius, far: 8 * radius });
     sun.shadow.normalBias = (2.5 * reach) / 2048;
-    sun.shadow.bias = -0.0002;
+    sun.shadow.bias = -0.0006;
     sun.shadow.radius = 3;
     this.scene.add(sun, sun.target);
     // From the other side, so that nothing seen from the front is flat gray.

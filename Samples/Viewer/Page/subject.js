@@ -6,6 +6,7 @@ import { includeLeaf, leavesOf, outerRadius } from './shapes.js';
 const MOMENTS = [0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1];
 const STRAYS = 0.01;   // of the places at either end of each axis
 const FAR_STRAY = 0.4; // of the others' extent: strays nearer than this are shown
+const MOST = 3000;     // bodies that are asked where they are: of more, evenly chosen ones
 const AMONG = 1.3;     // of the radius: what stands farther away from the middle is not meant
 
 // The range of values, without strays.
@@ -54,7 +55,9 @@ export function findSubject(recording, timeline) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
   const moving = recording.movers.filter((body) => motions[body] === 2);
-  const bodies = [moving, dynamic, [...motions.keys()]].find((list) => list.length > 0) ?? [];
+  const all = [moving, dynamic, [...motions.keys()]].find((list) => list.length > 0) ?? [];
+  const every = Math.ceil(all.length / MOST);
+  const bodies = all.filter((_, i) => i % every === 0 || i === all.length - 1);
   const radii = recording.shapes.map((_, index) => outerRadius(recording.shapes, index));
   const sizes = bodies.map((body) => radii[shapes[body]]).sort((a, b) => a - b);
   const typical = sizes[sizes.length >> 1] ?? 1;
@@ -81,14 +84,14 @@ export function findSubject(recording, timeline) {
     includeBody(recording, timeline, body, lower, upper);
     return Number.isFinite(lower.x) ? cornersOf(['x', 'y', 'z'].map((axis) => [lower[axis], upper[axis]])) : [];
   });
-  const all = places.concat(standing);
-  let ranges = rangesOf(all), shown;
+  const seen = places.concat(standing);
+  let ranges = rangesOf(seen), shown;
   const { lower, upper, from } = recording.view ?? {};
   if (lower) {
     ranges = [0, 1, 2].map((k) => [lower[k], upper[k]]);
     shown = cornersOf(ranges);
   } else {
-    shown = all.filter((place) => ranges.every(([low, high], k) => place[k] + place[3] >= low && place[k] - place[3] <= high));
+    shown = seen.filter((place) => ranges.every(([low, high], k) => place[k] + place[3] >= low && place[k] - place[3] <= high));
   }
   return { ...frame(ranges), lowest: ranges[1][0], places: shown, typical, from };
 }
