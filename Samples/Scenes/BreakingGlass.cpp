@@ -80,7 +80,7 @@ extern const Scene kScene{
     .name = "breaking_glass",
     .description = "balls of 2 to 200 m/s hit panes, which break where the impulse is more than they stand",
     .view = {.color = ColorMode::Plain,
-             .from = {0.4f, 0.2f, 1},
+             .from = {0.75f, 0.25f, 0.8f},
              .lower = {-6.3, 0, -1},
              .upper = {6.3, 2.3, 1.5},
              .picture = 0.15},

@@ -21,7 +21,7 @@ const FIXED = new Color(), DRIVEN = new Color();
 const GLASS = new Color('#3aa7c2');
 const AWAKE = variantsOf('#f2a45c', 0.03);
 const ASLEEP = variantsOf('#7d93aa', 0.03);
-export const GROUND = { light: '#d9dcde', dark: '#39414a' };
+export const GROUND = { light: '#d9dcde', dark: '#4a545f' };
 const DRIVEN_OF = { light: '#9aa7b4', dark: '#6d7a88' };
 // Of what does not move by itself; colors of bodies that do are the same by day and night.
 export function setTheme(theme) {

@@ -92,13 +92,16 @@ export class Labels {
       turn.fromArray(this.timeline.rotations, 4 * body).normalize();
       sprite.position.fromArray(this.timeline.positions, 3 * body);
       sprite.position.y += topOf(this.recording, presence.shape, turn);
-      const [x, y, depth] = this.stage.project(...sprite.position.toArray());
-      if (depth < 1) seen.push({ label, x: (x * pixels * camera.aspect) / 2, y: (y * pixels) / 2 + ABOVE * height, width, height });
+      const [x, y, depth] = this.stage.project(...sprite.position.toArray()), halfPicture = (pixels * camera.aspect) / 2;
+      if (depth >= 1 || Math.abs(x) > 1) continue;
+      // Whole, also at the picture's sides.
+      const at = x * halfPicture, most = Math.max(0, halfPicture - width / 2 - GAP), inside = Math.min(most, Math.max(-most, at));
+      seen.push({ label, aside: (at - inside) / width, x: inside, y: (y * pixels) / 2 + ABOVE * height, width, height });
     }
     seen.sort((a, b) => a.y - b.y || a.label.body - b.label.body);
     raises(seen).forEach((raise, i) => {
-      const { sprite, stem, height } = seen[i].label;
-      sprite.center.set(0.5, -ABOVE - raise / height);
+      const { label: { sprite, stem, height }, aside } = seen[i];
+      sprite.center.set(0.5 + aside, -ABOVE - raise / height);
       stem.visible = raise > 0;
       stem.position.copy(sprite.position);
       stem.scale.set(STEM * perPixel, (raise + ABOVE * height) * perPixel, 1);

@@ -1,7 +1,7 @@
 // What materials look like, in the order of Look (Samples/Scenes/SceneView.h), and the teeth of gears.
 import { Color, ExtrudeGeometry, Shape } from 'three';
 
-const LOOKS = [null, '#8dae66', '#cfe8f4', '#4b4d57', '#cfa552', '#c09a6b', '#b9b3a8', '#454b54', '#bfe2ea'].map((hex) => hex && new Color(hex));
+const LOOKS = [null, '#8dae66', '#cfe8f4', '#4b4d57', '#cfa552', '#c09a6b', '#b9b3a8', '#454b54', '#a4d4e0'].map((hex) => hex && new Color(hex));
 const WHITE = new Color('#ffffff');
 export const BRASS = 4, GLASS = 8; // with materials of their own
 

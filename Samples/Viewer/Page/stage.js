@@ -13,7 +13,7 @@ import { cornersOf } from './subject.js';
 // `sun`, `fill`: of the two lamps; `ambient`: of the light from all sides, from an environment or without one.
 const THEMES = {
   light: { horizon: '#e9ebeb', zenith: '#a3bfdb', ground: GROUND.light, sun: 3.1, fill: 0.35, ambient: [0.5, 1.3] },
-  dark: { horizon: '#20262e', zenith: '#0a0e14', ground: GROUND.dark, sun: 2.5, fill: 0.5, ambient: [2.2, 0.75] },
+  dark: { horizon: '#20262e', zenith: '#0a0e14', ground: GROUND.dark, sun: 2.9, fill: 0.6, ambient: [2.6, 1.3] },
 };
 const LIGHT_DIRECTION = new Vector3(-0.55, 1, 0.62).normalize();
 const FROM = [0.62, 0.42, 1]; // where the camera is, unless the scene says otherwise

@@ -221,6 +221,6 @@ export class Viewer {
     const { frame, lastFrame, time } = this.timeline;
     const whole = Math.floor(frame);
     element('scrub').value = whole;
-    element('clock').textContent = `${time.toFixed(2)} s · frame ${whole} / ${lastFrame}`;
+    element('clock').innerHTML = `${time.toFixed(2)} s · <span>frame </span>${whole} / ${lastFrame}`;
   }
 }
