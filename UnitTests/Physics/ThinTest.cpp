@@ -11,7 +11,7 @@
 namespace fulcrum::testing {
 namespace {
 
-// The gate: 40 rods and 400 plates, none lost, none awake after half a minute at most, with each kind of continuous
+// 40 rods and 400 plates, none lost, none awake after half a minute at most, with each kind of continuous
 // collision. (All of the first 16 seeds pass it with each.)
 TEST(Thin, RodsAndPlatesSettleOnAMeshAndSleep) {
     const Scene* scene = FindScene("thin");
