@@ -43,10 +43,10 @@ function tube(points, corners) {
 // 1.1 m wide with spout and handle.
 function teapot() {
   const along = (count, point) => [...Array(count + 1).keys()].map((i) => point(i / count));
-  const spout = along(4, (t) => [0.3 + 0.34 * t, 0.16 + 0.12 * t + 0.2 * t * t, 0.095 - 0.05 * t, 0.085 - 0.045 * t]);
+  const spout = along(4, (t) => [0.3 + 0.34 * t, 0.16 + 0.12 * t + 0.2 * t * t, 0.1 - 0.045 * t, 0.09 - 0.035 * t]);
   const handle = along(8, (t) => {
     const angle = (0.42 + 1.16 * t) * Math.PI;
-    return [-0.34 + 0.24 * Math.cos(angle), 0.27 + 0.17 * Math.sin(angle), 0.032, 0.042];
+    return [-0.34 + 0.24 * Math.cos(angle), 0.27 + 0.17 * Math.sin(angle), 0.042, 0.055];
   });
   const named = (name, solids) => solids.map((solid, i) => [solids.length > 1 ? `${name}${i + 1}` : name, solid]);
   return [
