@@ -45,18 +45,18 @@ function sceneTable({ scenes }) {
 
 // Speed and accuracy in one picture: of each scene the time of a step as a part of Bullet's, and how exact the result is.
 function speedPicture({ scenes }) {
-  const WIDTH = 900, TOP = 44, ROW = 36, LEFT = 282, BARS = 330, RIGHT = LEFT + BARS + 24;
+  const WIDTH = 900, TOP = 44, ROW = 36, LEFT = 298, BARS = 330, RIGHT = LEFT + BARS + 24;
   const escape = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('`', '');
   const rows = scenes.map((scene, i) => {
-    const y = TOP + i * ROW, { ms, ratio: part } = scene.threads[1], end = LEFT + Math.max(2, BARS * part), isFull = part > 0.7;
+    const y = TOP + i * ROW, { ms, ratio: part } = scene.threads[1], end = LEFT + Math.max(2, BARS * part), isInside = part > 0.45;
     const [what] = scene.what.replace('#', thousands(scene.joints ?? 0)).split(', as one batch');
     return `<g>
 <text x="16" y="${y + 13}" class="name">${scene.name}</text>
 <text x="16" y="${y + 28}" class="small">${escape(what)}</text>
 <rect x="${LEFT}" y="${y + 5}" width="${BARS}" height="20" rx="3" fill="#e4e8ec"/>
 <rect x="${LEFT}" y="${y + 5}" width="${(end - LEFT).toFixed(1)}" height="20" rx="3" fill="#4f86d9"/>
-<text x="${(isFull ? end - 6 : end + 6).toFixed(1)}" y="${y + 19}"${isFull ? ' text-anchor="end" fill="#fff"' : ''}>${milliseconds(ms)} ms</text>
-${part > 0.55 ? '' : `<text x="${LEFT + BARS - 6}" y="${y + 19}" text-anchor="end" class="small">Bullet ${scene.bullet_ms} ms</text>
+<text x="${(isInside ? end - 6 : end + 6).toFixed(1)}" y="${y + 19}"${isInside ? ' text-anchor="end" fill="#fff"' : ''}>${milliseconds(ms)} ms</text>
+${part > 0.74 ? '' : `<text x="${LEFT + BARS - 6}" y="${y + 19}" text-anchor="end" class="small">Bullet ${scene.bullet_ms} ms</text>
 `}<text x="${RIGHT}" y="${y + 19}">${escape(accuracyText(scene))}</text>
 </g>`;
   });
