@@ -59,7 +59,7 @@ extern const Scene kScene{
     .view = {.color = ColorMode::Plain,
              .from = {1, 0.55f, 0.45f},
              .lower = {-9, 0, -6},
-             .upper = {9, 9.5, 6},
+             .upper = {9, 12, 6},
              .picture = 0.42},
     .build = Build,
     .accuracy = Accuracy,
