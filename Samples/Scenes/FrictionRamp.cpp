@@ -57,9 +57,9 @@ extern const Scene kScene{
     .steps = 300,
     .isClosed = true,
     .view = {.color = ColorMode::Plain,
-             .from = {1, 0.55f, 0.45f},
-             .lower = {-9, 0, -6},
-             .upper = {9, 12, 6},
+             .from = {0.8f, 0.5f, 0.8f},
+             .lower = {-8, 0.5, -6},
+             .upper = {8, 15, 6},  // room for the labels
              .picture = 0.42},
     .build = Build,
     .accuracy = Accuracy,
