@@ -102,7 +102,7 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
         ->type_name("FILE");
     app.add_flag("--soak", command.soaks,
                  "10^6 steps of the scene soak at the default setting, with 1 thread, then with 2, and nothing else: "
-                 "some minutes; exit status 1 where a gate fails");
+                 "some minutes; exit status 1 where a requirement fails");
     app.add_flag(
         "--recordings", command.recordings.isOfAll,
         "record all runs to pages in DIR/recordings, which the dots of the report link to: about a megabyte each");
