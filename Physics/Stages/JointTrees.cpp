@@ -18,7 +18,7 @@ constexpr float kMostSubsteps = 3;
 
 // A set of bodies connected by joints, and a spanning tree of the joints.
 struct Component {
-    std::vector<uint32_t> bodies;
+    Array<uint32_t> bodies;
     uint32_t root = kNone;
     bool anchored = false;       // some joint connects to an immovable body
     bool overridesMass = false;  // some joint overrides masses, which trees do not support
