@@ -12,12 +12,12 @@
 // are read-modify-writes, so they keep the release sequence.
 #include <Fulcrum/Jobs/Spin.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
-#include <Fulcrum/Math/Memory.h>
 
 #include <algorithm>
 #include <atomic>
 #include <system_error>
 #include <thread>
+#include <vector>
 
 namespace fulcrum {
 namespace {
@@ -58,10 +58,6 @@ uint32_t PieceOf(uint32_t blocksLeft) { return (blocksLeft + 7) / 8; }
 }  // namespace
 
 struct ThreadPool::State {
-    FULCRUM_WORLD_MEMORY
-
-    explicit State(uint32_t workers) : shares(workers) { threads.reserve(workers - 1); }
-
     // A worker's remaining share of a ParallelFor: first and last block of minimumRange items, packed in one word.
     struct alignas(64) Share {
         std::atomic<uint64_t> blocks{0};
@@ -70,12 +66,14 @@ struct ThreadPool::State {
     alignas(64) std::atomic<uint32_t> gate{0};  // generation, open bit, number of helpers inside
     const FunctionRef<void(uint32_t)>* job = nullptr;
     alignas(64) std::atomic<bool> busy{false};
-    Array<Share> shares;  // by worker
-    Array<std::thread> threads;
+    std::unique_ptr<Share[]> shares;
+    std::vector<std::thread> threads;
 };
 
-ThreadPool::ThreadPool(uint32_t workers) : state_(std::make_unique<State>(std::clamp(workers, 1u, kMaximumWorkers))) {
-    workers = static_cast<uint32_t>(state_->shares.size());
+ThreadPool::ThreadPool(uint32_t workers) : state_(std::make_unique<State>()) {
+    workers = std::clamp(workers, 1u, kMaximumWorkers);
+    state_->shares = std::make_unique<State::Share[]>(workers);
+    state_->threads.reserve(workers - 1);
     try {
         for (uint32_t worker = 1; worker < workers; ++worker)
             state_->threads.emplace_back([this, worker] { RunHelper(worker); });

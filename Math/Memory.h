@@ -47,7 +47,8 @@ inline void DeallocateTo(MemoryResource* memory, void* address, size_t bytes, si
     ::operator delete(address, std::align_val_t(alignment));
 }
 
-// Keeps the resource with which it was constructed. A container that is moved or swapped takes its resource along.
+// Keeps the resource with which it was constructed. A container that is moved or swapped takes its resource along, a
+// copy has that of the original.
 template <class T>
 class Allocator {
 public:
@@ -58,8 +59,6 @@ public:
     Allocator() : memory_(tCurrentMemory) {}
     template <class U>
     Allocator(const Allocator<U>& other) : memory_(other.Memory()) {}
-    // A copy of a container is made where the copying thread is.
-    Allocator select_on_container_copy_construction() const { return {}; }
 
     T* allocate(size_t count) {
         if (count > std::numeric_limits<size_t>::max() / sizeof(T)) throw std::bad_array_new_length();

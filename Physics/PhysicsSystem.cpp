@@ -22,14 +22,10 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
     const MemoryScope scope(memory);
     auto world = std::make_unique<WorldState>(memory);
     world->settings = settings;
-    if (!jobs) {
-        world->ownJobs = std::make_unique<ThreadPool>(1);
-        jobs = world->ownJobs.get();
-    }
-    world->jobs = std::make_unique<WorldJobs>(*jobs, world->lock);
+    world->jobs = std::make_unique<WorldJobs>(jobs, world->lock);
     KeepForEvents(*world);
     auto step = std::make_unique<StepState>();
-    step->findings.resize(jobs->WorkerCount());
+    step->findings.resize(world->jobs->WorkerCount());
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world), std::move(step)));
 }
 

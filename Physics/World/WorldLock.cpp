@@ -203,19 +203,20 @@ bool WorldLock::LetsQueriesIn() const { return (state_->word.load(std::memory_or
 
 void WorldJobs::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) {
     const WorldLock::Access access = WorldLock::OfThisThread(lock_);
-    if (access == WorldLock::Access::Queries && lock_.LetsQueriesIn()) {
+    if (!jobs_ || (access == WorldLock::Access::Queries && lock_.LetsQueriesIn())) {
         if (count > 0) job({0, count, 0});
         return;
     }
-    jobs_.ParallelFor(count, minimumRange, [&](JobRange range) {
+    jobs_->ParallelFor(count, minimumRange, [&](JobRange range) {
         const WorldLock::Scope scope(lock_, access);
         job(range);
     });
 }
 
 void WorldJobs::RunOnWorkers(FunctionRef<void(uint32_t worker)> job) {
+    if (!jobs_) return job(0);
     const WorldLock::Access access = WorldLock::OfThisThread(lock_);
-    jobs_.RunOnWorkers([&](uint32_t worker) {
+    jobs_->RunOnWorkers([&](uint32_t worker) {
         const WorldLock::Scope scope(lock_, access);
         job(worker);
     });

@@ -96,17 +96,17 @@ private:
 };
 
 // A job system that gives workers the access of the thread whose job they run, while they run it. Jobs of queries
-// during a step run on the calling thread alone: the step needs the workers.
+// during a step run on the calling thread alone: the step needs the workers. So do all if `jobs` is null.
 class WorldJobs final : public JobSystem {
 public:
     FULCRUM_WORLD_MEMORY
-    WorldJobs(JobSystem& jobs, WorldLock& lock) : jobs_(jobs), lock_(lock) {}
-    uint32_t WorkerCount() const override { return jobs_.WorkerCount(); }
+    WorldJobs(JobSystem* jobs, WorldLock& lock) : jobs_(jobs), lock_(lock) {}
+    uint32_t WorkerCount() const override { return jobs_ ? jobs_->WorkerCount() : 1; }
     void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) override;
     void RunOnWorkers(FunctionRef<void(uint32_t worker)> job) override;
 
 private:
-    JobSystem& jobs_;
+    JobSystem* jobs_;
     WorldLock& lock_;
 };
 

@@ -2,7 +2,6 @@
 // one. Independent of the stages and the interfaces.
 #pragma once
 
-#include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/ColliderStore.h>
@@ -26,8 +25,7 @@ struct WorldState {
     explicit WorldState(MemoryResource* memory) : lock(memory) {}
 
     SystemSettings settings;
-    std::unique_ptr<ThreadPool> ownJobs;
-    std::unique_ptr<JobSystem> jobs;  // the user's, or our own, as WorldJobs
+    std::unique_ptr<WorldJobs> jobs;
     const ContactListener* listener = nullptr;
     StepObserver* observer = nullptr;
     CallObserver* callObserver = nullptr;

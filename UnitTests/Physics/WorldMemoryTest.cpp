@@ -159,6 +159,36 @@ TEST(WorldMemory, AStepInASteadyStateAsksForNothing) {
     }
 }
 
+// Buffers never shrink: a level that was full once, as while it loads, takes as many bodies again without asking for
+// memory, neither for the batch nor in the steps that follow.
+TEST(WorldMemory, IsThereWhereTheWorldHasBeenAsFull) {
+    const Parts parts;
+    CountingMemory memory;
+    auto system = PhysicsSystem::Create({}, nullptr, &memory).Value();
+    ASSERT_TRUE(
+        system->Bodies().Create({.shape = parts.floor, .motion = MotionType::Static, .position = {0, -0.5, 0}}));
+    const auto crates = [&](double x) {
+        std::vector<BodySettings> bodies;
+        for (int i = 0; i < 600; ++i)
+            bodies.push_back(
+                {.shape = parts.cube, .position = {x + 0.65 * (i % 10), 0.3 + 0.62 * (i / 100), 0.65 * (i / 10 % 10)}});
+        return BodyBatch::Prepare(std::move(bodies)).Value();
+    };
+    ASSERT_TRUE(system->Bodies().Commit(crates(-20)));
+    const BodyBatch more = crates(10);
+    uint64_t calls = 0;
+    for (const bool isAgain : {false, true}) {
+        calls = memory.Calls();
+        const std::vector<BodyId> ids = system->Bodies().Commit(more).Value();
+        for (int step = 0; step < 20; ++step) ASSERT_TRUE(system->Update(kStep));
+        if (isAgain) break;
+        EXPECT_GT(memory.Calls(), calls);
+        for (const BodyId id : ids) ASSERT_TRUE(system->Bodies().Remove(id));
+        for (int step = 0; step < 20; ++step) ASSERT_TRUE(system->Update(kStep));
+    }
+    EXPECT_EQ(memory.Calls(), calls);
+}
+
 TEST(WorldMemory, WorldsDoNotShareIt) {
     const Parts parts;
     CountingMemory first, second;
