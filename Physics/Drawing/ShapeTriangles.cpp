@@ -8,7 +8,6 @@
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -16,12 +15,12 @@ namespace fulcrum {
 
 namespace {
 
-using Visit = FunctionRef<void(const DrawnTriangle&)>;
+using TriangleVisitor = FunctionRef<void(const DrawnTriangle&)>;
 
 // Of a convex shape, in its center frame.
 struct ConvexTriangles {
     const ConvexShape& shape;
-    const Visit& visit;
+    const TriangleVisitor& visit;
 
     // Triangles of directions become those of the points that lie farthest along them: inscribed, and closed, since
     // neighbors share their directions. Those on an edge or a corner of the shape have no area.
@@ -70,7 +69,7 @@ struct ConvexTriangles {
 };
 
 // In the center frame.
-void VisitConvex(const ConvexShape& shape, int detail, const Visit& visit) {
+void VisitConvex(const ConvexShape& shape, int detail, const TriangleVisitor& visit) {
     const ConvexTriangles triangles{shape, visit};
     const bool isSharp = shape.ConvexRadius() == 0;
     if (shape.Type() == ShapeType::Box && isSharp) return triangles.OfBox(static_cast<const Box&>(shape).HalfExtents());
@@ -79,10 +78,9 @@ void VisitConvex(const ConvexShape& shape, int detail, const Visit& visit) {
     triangles.OfAllDirections(detail);
 }
 
-void VisitPlane(const Plane& plane, float extent, const Visit& visit) {
+void VisitPlane(const Plane& plane, float extent, const TriangleVisitor& visit) {
     const Vector3 n = plane.Normal();
-    const Vector3 side = std::fabs(n.x()) < 0.7f ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
-    const Vector3 u = Normalized(Cross<float>(n, side)) * extent, v = Normalized(Cross<float>(n, u)) * extent,
+    const Vector3 across = Perpendicular(n), u = across * extent, v = Cross<float>(n, across) * extent,
                   center = n * plane.Offset();
     visit({{center - u - v, center + u - v, center + u + v}});
     visit({{center - u - v, center + u + v, center - u + v}});

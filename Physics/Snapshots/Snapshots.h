@@ -17,6 +17,8 @@ struct NumberedFilters {
 
 // Temporary lists of a snapshot, which keep their memory.
 struct SnapshotRoom {
+    FULCRUM_WORLD_MEMORY
+
     Array<SnapshotBlock> blocks;
     Array<std::byte> block;  // for HashOfState
     Array<std::byte> settings;

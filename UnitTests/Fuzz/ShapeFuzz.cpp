@@ -22,10 +22,9 @@ namespace {
 
 void Use(const ShapePtr& shape) {
     const Bounds& bounds = shape->LocalBounds();
-    Promise(
-        shape->Type() == ShapeType::Empty || shape->Type() == ShapeType::Plane ||
-            (IsFinite(bounds.lower) && IsFinite(bounds.upper) && (bounds.lower.array() <= bounds.upper.array()).all()),
-        "bounds of a shape are finite and not inverted");
+    Promise(shape->Type() == ShapeType::Empty || shape->Type() == ShapeType::Plane ||
+                (IsFinite(bounds.lower) && IsFinite(bounds.upper) && bounds.lower.isAtMost(bounds.upper)),
+            "bounds of a shape are finite and not inverted");
     const MassProperties& mass = shape->Mass();
     Promise(std::isfinite(mass.volume) && mass.volume >= 0 && IsFinite(mass.principalInertia) &&
                 IsFinite(mass.centerOfMass),

@@ -70,7 +70,7 @@ struct Seen {
     }
 };
 
-Seen Look(Heap& heap) {
+Seen Look(Heap& heap, std::span<const BodyId> ids) {
     Seen seen;
     RandomPoses random(8);
     const QueryInterface& queries = heap.world.System().Queries();
@@ -95,7 +95,7 @@ Seen Look(Heap& heap) {
         queries.FindOverlaps(placed, found);
         seen.overlaps.insert(seen.overlaps.end(), found.begin(), found.end());
     }
-    for (const BodyId id : heap.ids) {
+    for (const BodyId id : ids) {
         seen.poses.push_back(heap.world.System().LockingBodies().GetPose(id));
         seen.bounds.push_back(heap.world.System().LockingBodies().GetBounds(id));
     }
@@ -114,7 +114,7 @@ TEST(WorldThreads, QueriesDuringAStepSeeTheStateOfTheLastOne) {
             const std::string stage = name;
             for (const char* inside : {"FindPairs", "Collide", "Color", "BuildIslands", "Prepare", "Solve", "Store"}) {
                 if (stage != inside) continue;
-                const Seen now = std::async(std::launch::async, [this] { return Look(heap); }).get();
+                const Seen now = std::async(std::launch::async, [this] { return Look(heap, heap.ids); }).get();
                 EXPECT_TRUE(now == before) << stage;
                 ++looked;
             }
@@ -125,7 +125,7 @@ TEST(WorldThreads, QueriesDuringAStepSeeTheStateOfTheLastOne) {
         Observer observer(heap);
         heap.world.System().SetStepObserver(&observer);
         for (int step = 0; step < 25; ++step) {
-            observer.before = Look(heap);
+            observer.before = Look(heap, heap.ids);
             heap.world.Step();
         }
         EXPECT_EQ(observer.looked, 25 * 7);
@@ -139,7 +139,7 @@ TEST(WorldThreads, QueriesDuringStepsDoNotChangeThem) {
         Heap alone(1), watched(2);
         std::atomic<bool> stop{false};
         std::thread watcher([&] {
-            while (!stop) static_cast<void>(Look(watched));
+            while (!stop) static_cast<void>(Look(watched, watched.ids));
         });
         for (int step = 0; step < 60; ++step) {
             alone.world.Step();
@@ -287,6 +287,10 @@ TEST(WorldThreads, EditCastAndStepAtOnce) {
         std::atomic<bool> stop{false};
         std::atomic<uint64_t> edits{0}, asked{0};
         std::mutex mutex;  // of the ids
+        const auto allIds = [&] {
+            const std::lock_guard guard(mutex);
+            return heap.ids;
+        };
         const auto anyId = [&](RandomPoses& random) {
             const std::lock_guard guard(mutex);
             return heap.ids[random.Below(static_cast<uint32_t>(heap.ids.size()))];
@@ -345,7 +349,7 @@ TEST(WorldThreads, EditCastAndStepAtOnce) {
             threads.emplace_back([&, t] {
                 RandomPoses random(90 + t);
                 while (!stop) {
-                    static_cast<void>(Look(heap));
+                    static_cast<void>(Look(heap, allIds()));
                     const BodyId id = anyId(random);
                     const BodyInterface& bodies = system.LockingBodies();
                     if (bodies.Exists(id)) {
