@@ -18,7 +18,7 @@ struct FuzzTarget {
     void (*run)(std::span<const uint8_t> bytes);
     // Valid inputs to start from.
     std::vector<FuzzBytes> (*seeds)();
-    int quickRuns;  // of FuzzTest.cpp: some tenths of a second
+    int quickRuns;  // of FuzzTest.cpp: about a second
 };
 
 std::span<const FuzzTarget> FuzzTargets();

@@ -61,6 +61,6 @@ std::vector<FuzzBytes> SeedsOfPrograms() {
 
 }  // namespace
 
-const FuzzTarget kProgramTarget{"program", RunProgram, SeedsOfPrograms, 20};
+const FuzzTarget kProgramTarget{"program", RunProgram, SeedsOfPrograms, 40};
 
 }  // namespace fulcrum::testing

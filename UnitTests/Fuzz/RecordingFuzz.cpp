@@ -63,6 +63,6 @@ std::vector<FuzzBytes> SeedsOfRecordings() {
 
 }  // namespace
 
-const FuzzTarget kRecordingTarget{"recording", RunRecording, SeedsOfRecordings, 150};
+const FuzzTarget kRecordingTarget{"recording", RunRecording, SeedsOfRecordings, 600};
 
 }  // namespace fulcrum::testing

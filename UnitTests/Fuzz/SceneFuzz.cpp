@@ -56,7 +56,7 @@ std::vector<FuzzBytes> SeedsOfScenes() {
 
 }  // namespace
 
-const FuzzTarget kSceneTarget{"scene", RunScene, SeedsOfScenes, 300};
+const FuzzTarget kSceneTarget{"scene", RunScene, SeedsOfScenes, 1500};
 
 }  // namespace fulcrum::testing
 

@@ -176,8 +176,8 @@ std::vector<FuzzBytes> SeedsOfMeshes() {
 
 }  // namespace
 
-const FuzzTarget kShapeFileTarget{"shape-file", RunShapeFile, SeedsOfShapeFiles, 300};
-const FuzzTarget kHullTarget{"hull", RunHull, SeedsOfHulls, 150};
-const FuzzTarget kMeshTarget{"mesh", RunMesh, SeedsOfMeshes, 150};
+const FuzzTarget kShapeFileTarget{"shape-file", RunShapeFile, SeedsOfShapeFiles, 3000};
+const FuzzTarget kHullTarget{"hull", RunHull, SeedsOfHulls, 600};
+const FuzzTarget kMeshTarget{"mesh", RunMesh, SeedsOfMeshes, 1500};
 
 }  // namespace fulcrum::testing

@@ -105,7 +105,7 @@ std::vector<FuzzBytes> SeedsOfDeltas() {
 
 }  // namespace
 
-const FuzzTarget kSnapshotTarget{"snapshot", RunSnapshot, SeedsOfSnapshots, 400};
-const FuzzTarget kSnapshotDeltaTarget{"snapshot-delta", RunDelta, SeedsOfDeltas, 400};
+const FuzzTarget kSnapshotTarget{"snapshot", RunSnapshot, SeedsOfSnapshots, 1500};
+const FuzzTarget kSnapshotDeltaTarget{"snapshot-delta", RunDelta, SeedsOfDeltas, 3000};
 
 }  // namespace fulcrum::testing
