@@ -66,7 +66,7 @@ void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintC
 // Substeps: integrates velocities, warm starts, iterates, integrates poses, relax or position iterations. Writes
 // velocities, displacements and the batches. Colliders and pairs are read for dispersing bodies. pushes: by body,
 // filled for ErrorMeter.h; empty if not requested.
-void Solve(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, const JointStore& joints,
+void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& pairs, const JointStore& joints,
            const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, std::span<PushNote> pushes,
            const StepWorkers& workers);
 
