@@ -35,12 +35,15 @@ void SettleStoppedIn(WorldState& world, const StepWorkers& workers) {
     SettleStopped(workers.findings, world.colliders, world.bodies, world.pairs, world.joints, world.coloring);
 }
 
-// The stages in the order in which they run, with their arguments.
+// The stages in the order in which they run, with their arguments. Queries of other threads are let in between the
+// first and the Store stage: what they read does not change there (WorldLock.h).
 constexpr Stage kStages[] = {
     {"UpdateBounds",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          UpdateBounds(step, world.pairs, world.sensors, world.bodies, world.colliders, state.crowd.dispersing, workers);
          SettleStoppedIn(world, workers);
+         world.outsideFatBounds.Clear();
+         world.lock.LetQueriesIn();
      }},
     {"FindPairs", FindPairsOf},
     {"Collide",
@@ -83,6 +86,7 @@ constexpr Stage kStages[] = {
     {"Store",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          StoreImpulses(step, world.bodies, state.solver, world.pairs, world.joints, workers);
+         world.lock.KeepQueriesOut();
          state.sleepCandidates = MoveBodies(step, world.colliders, world.joints, world.coloring, state.crowd,
                                             world.bodies, state.sweeps, workers, state.report);
          BreakJoints(world.bodies, world.colliders, world.joints, world.coloring, state.events.broken);
@@ -143,7 +147,7 @@ void ForgetRemoved(WorldState& world) {
 void Clear(EventBuffers& buffers) {
     buffers.contacts.clear();
     buffers.broken.clear();
-    for (std::vector<BodyId>* ids : {&buffers.awake, &buffers.moved, &buffers.woke, &buffers.fellAsleep}) ids->clear();
+    for (Array<BodyId>* ids : {&buffers.awake, &buffers.moved, &buffers.woke, &buffers.fellAsleep}) ids->clear();
     buffers.events = {};
 }
 

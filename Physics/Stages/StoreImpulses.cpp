@@ -43,8 +43,8 @@ void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& 
 }
 
 template <class Batch>
-void StoreAll(const Records& to, const std::vector<Batch>& batches, uint32_t begin, uint32_t end,
-              const StoreScale& scale, const StepWorkers& workers) {
+void StoreAll(const Records& to, const Array<Batch>& batches, uint32_t begin, uint32_t end, const StoreScale& scale,
+              const StepWorkers& workers) {
     workers.jobs.ParallelFor(end - begin, 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             StoreBatch(to, batches[begin + i], scale, workers.findings[range.worker]);
