@@ -1,0 +1,20 @@
+# Toolchain: WebAssembly with emscripten, Debian's or that of $ENV{EMSDK}. Browsers and node 16.4 or later run it (SIMD128).
+foreach(root $ENV{EMSDK}/upstream/emscripten /usr/share/emscripten)
+  if(EXISTS ${root}/cmake/Modules/Platform/Emscripten.cmake)
+    include(${root}/cmake/Modules/Platform/Emscripten.cmake)
+    break()
+  endif()
+endforeach()
+if(NOT EMSCRIPTEN)
+  message(FATAL_ERROR "emscripten is not installed (Debian: apt install emscripten) and EMSDK does not name it")
+endif()
+
+get_filename_component(FULCRUM_COMPATIBILITY ${CMAKE_CURRENT_LIST_DIR}/../Web/Compatibility ABSOLUTE)
+# One compilation serves programs with and without threads: -pthread decides when they are linked.
+set(CMAKE_CXX_FLAGS_INIT "-msimd128 -pthread -isystem ${FULCRUM_COMPATIBILITY}")
+set(CMAKE_CXX_FLAGS_RELEASE_INIT "-O2 -DNDEBUG")
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG" CACHE STRING "")
+set(CMAKE_POSITION_INDEPENDENT_CODE OFF)
+# Headers alone, the same for every processor.
+set(Eigen3_DIR /usr/share/eigen3/cmake CACHE PATH "")
+set(FULCRUM_LIBCCD OFF CACHE BOOL "")
