@@ -137,9 +137,7 @@ ShapeResult ReadCustom(ByteReader& in, const ShapeFileScope& scope) {
     const std::string name(letters.begin(), letters.end());
     ByteReader block = in.ReadBlock();
     if (in.HasFailed()) return Damaged("a custom shape breaks off");
-    const auto format = std::find_if(scope.custom.begin(), scope.custom.end(), [&](const CustomShapeFormat& one) {
-        return one.name == std::string_view(name);
-    });
+    const auto format = std::ranges::find(scope.custom, std::string_view(name), &CustomShapeFormat::name);
     if (format == scope.custom.end()) {
         return Error{ErrorCode::Unsupported,
                      Message("no format of the name \"%.100s\" is given, which a custom shape needs", name.c_str())};
@@ -169,8 +167,7 @@ constexpr ShapeFormat kFormats[] = {
 };
 
 const ShapeFormat* FormatOf(ShapeType type) {
-    const auto found = std::find_if(std::begin(kFormats), std::end(kFormats),
-                                    [&](const ShapeFormat& format) { return format.type == type; });
+    const auto found = std::ranges::find(kFormats, type, &ShapeFormat::type);
     return found == std::end(kFormats) ? nullptr : found;
 }
 
@@ -217,8 +214,7 @@ ShapeResult ReadShape(ByteReader& in, const ShapeFileScope& scope) {
     const uint8_t code = in.Get<uint8_t>();
     ByteReader block = in.ReadBlock();
     if (block.HasFailed()) return Damaged("it breaks off");
-    const auto format = std::find_if(std::begin(kFormats), std::end(kFormats),
-                                     [&](const ShapeFormat& one) { return one.code == code; });
+    const auto format = std::ranges::find(kFormats, code, &ShapeFormat::code);
     if (format == std::end(kFormats))
         return Error{ErrorCode::Unsupported, Message("shape code %d is unknown", int{code})};
     ShapeResult shape = format->read(block, scope);

@@ -101,9 +101,8 @@ private:
 };
 
 bool AreVerticesInRange(const MeshTree& tree) {
-    return std::all_of(tree.vertices.begin(), tree.vertices.end(), [](const Vector3& v) {
-        return IsFinite(v) && v.cwiseAbs().maxCoeff() <= kLargestCoordinate;
-    });
+    return std::ranges::all_of(
+        tree.vertices, [](const Vector3& v) { return IsFinite(v) && v.cwiseAbs().maxCoeff() <= kLargestCoordinate; });
 }
 
 }  // namespace
@@ -174,7 +173,7 @@ ShapeResult ShapeFileAccess::ReadMesh(ByteReader& in) {
     if (in.HasFailed()) return Damaged("a mesh breaks off");
 
     if (!AreVerticesInRange(*tree)) return Damaged("a vertex of a mesh");
-    if (std::any_of(corners.begin(), corners.end(), [&](uint32_t corner) { return corner >= vertexCount; })) {
+    if (std::ranges::any_of(corners, [&](uint32_t corner) { return corner >= vertexCount; })) {
         return Damaged("a triangle names a vertex that is not there");
     }
     for (size_t i = 0; i < corners.size(); i += 3) {
