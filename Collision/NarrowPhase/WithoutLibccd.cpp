@@ -1,5 +1,5 @@
-// In place of Libccd.cpp in builds without libccd (FULCRUM_LIBCCD=OFF): NarrowPhaseMethod::Libccd is refused by the check
-// of the settings, and queries whose own EPA fails do without a second opinion.
+// In place of Libccd.cpp in builds without libccd (FULCRUM_LIBCCD=OFF): NarrowPhaseMethod::Libccd is refused by the
+// check of the settings, and queries whose own EPA fails do without a second opinion.
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 

@@ -13,21 +13,28 @@ struct Change {
     Status (*apply)(BodyInterface& bodies, BodyId id, const double* n);
 };
 constexpr Change kChanges[] = {
-    {"setPose", [](BodyInterface& b, BodyId id, const double* n) { return b.SetPose(id, PositionAt(n), RotationAt(n + 3)); }},
+    {"setPose",
+     [](BodyInterface& b, BodyId id, const double* n) { return b.SetPose(id, PositionAt(n), RotationAt(n + 3)); }},
     {"moveKinematic",
      [](BodyInterface& b, BodyId id, const double* n) {
          return b.MoveKinematic(id, PositionAt(n), RotationAt(n + 3), static_cast<float>(n[7]));
      }},
-    {"setVelocity", [](BodyInterface& b, BodyId id, const double* n) { return b.SetVelocity(id, VectorAt(n), VectorAt(n + 3)); }},
+    {"setVelocity",
+     [](BodyInterface& b, BodyId id, const double* n) { return b.SetVelocity(id, VectorAt(n), VectorAt(n + 3)); }},
     {"addForce", [](BodyInterface& b, BodyId id, const double* n) { return b.AddForce(id, VectorAt(n)); }},
-    {"addForceAt", [](BodyInterface& b, BodyId id, const double* n) { return b.AddForceAt(id, VectorAt(n), PositionAt(n + 3)); }},
+    {"addForceAt",
+     [](BodyInterface& b, BodyId id, const double* n) { return b.AddForceAt(id, VectorAt(n), PositionAt(n + 3)); }},
     {"addTorque", [](BodyInterface& b, BodyId id, const double* n) { return b.AddTorque(id, VectorAt(n)); }},
     {"addImpulse", [](BodyInterface& b, BodyId id, const double* n) { return b.AddImpulse(id, VectorAt(n)); }},
-    {"addImpulseAt", [](BodyInterface& b, BodyId id, const double* n) { return b.AddImpulseAt(id, VectorAt(n), PositionAt(n + 3)); }},
-    {"addAngularImpulse", [](BodyInterface& b, BodyId id, const double* n) { return b.AddAngularImpulse(id, VectorAt(n)); }},
-    {"setMotionType", [](BodyInterface& b, BodyId id, const double* n) { return b.SetMotionType(id, static_cast<MotionType>(n[0])); }},
+    {"addImpulseAt",
+     [](BodyInterface& b, BodyId id, const double* n) { return b.AddImpulseAt(id, VectorAt(n), PositionAt(n + 3)); }},
+    {"addAngularImpulse",
+     [](BodyInterface& b, BodyId id, const double* n) { return b.AddAngularImpulse(id, VectorAt(n)); }},
+    {"setMotionType",
+     [](BodyInterface& b, BodyId id, const double* n) { return b.SetMotionType(id, static_cast<MotionType>(n[0])); }},
     {"setMass", [](BodyInterface& b, BodyId id, const double* n) { return b.SetMass(id, static_cast<float>(n[0])); }},
-    {"setGravityFactor", [](BodyInterface& b, BodyId id, const double* n) { return b.SetGravityFactor(id, static_cast<float>(n[0])); }},
+    {"setGravityFactor",
+     [](BodyInterface& b, BodyId id, const double* n) { return b.SetGravityFactor(id, static_cast<float>(n[0])); }},
     {"setDamping",
      [](BodyInterface& b, BodyId id, const double* n) {
          return b.SetDamping(id, static_cast<float>(n[0]), static_cast<float>(n[1]));
@@ -91,7 +98,8 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_setMaterial(World* world, uint32_t index, uin
 FULCRUM_FOR_JAVASCRIPT int fulcrum_setShape(World* world, uint32_t index, uint32_t generation, uint32_t number) {
     const auto& shapes = Shared().document.shapes;
     const auto found = shapes.find("#" + std::to_string(number));
-    return Outcome(world->System().Bodies().SetShape({index, generation}, found == shapes.end() ? nullptr : found->second));
+    return Outcome(
+        world->System().Bodies().SetShape({index, generation}, found == shapes.end() ? nullptr : found->second));
 }
 
 // The numbers: position 3, rotation 4, linear and angular velocity 3 each, mass, motion, whether awake.
@@ -139,7 +147,8 @@ FULCRUM_FOR_JAVASCRIPT uint32_t fulcrum_readBodies(World* world) {
             to.angularVelocities[3 * i + k] = angular[axis];
         }
         const Quaternion& q = pose.rotation;
-        to.rotations[4 * i] = q.x, to.rotations[4 * i + 1] = q.y, to.rotations[4 * i + 2] = q.z, to.rotations[4 * i + 3] = q.w;
+        to.rotations[4 * i] = q.x, to.rotations[4 * i + 1] = q.y, to.rotations[4 * i + 2] = q.z,
+                         to.rotations[4 * i + 3] = q.w;
         to.generations[i] = id.generation;
         const MotionType motion = bodies.GetMotionType(id);
         to.flags[i] = static_cast<uint8_t>(1 | (bodies.IsAwake(id) ? 2 : 0) | (motion == MotionType::Static ? 4 : 0) |
@@ -147,7 +156,8 @@ FULCRUM_FOR_JAVASCRIPT uint32_t fulcrum_readBodies(World* world) {
     });
     const void* const arrays[] = {to.positions.data(),         to.rotations.data(),   to.linearVelocities.data(),
                                   to.angularVelocities.data(), to.generations.data(), to.flags.data()};
-    for (size_t i = 0; i < std::size(arrays); ++i) Shared().numbers[i] = static_cast<double>(std::bit_cast<uintptr_t>(arrays[i]));
+    for (size_t i = 0; i < std::size(arrays); ++i)
+        Shared().numbers[i] = static_cast<double>(std::bit_cast<uintptr_t>(arrays[i]));
     return static_cast<uint32_t>(to.flags.size());
 }
 

@@ -29,7 +29,7 @@ Exchange& Shared();
 
 // The state of all bodies as arrays by BodyId::index, for JavaScript to read in place.
 struct BodyArrays {
-    std::vector<double> positions;                                   // x y z, m
+    std::vector<double> positions;                                      // x y z, m
     std::vector<float> rotations, linearVelocities, angularVelocities;  // x y z w; m/s; rad/s
     std::vector<uint32_t> generations;
     std::vector<uint8_t> flags;  // 1: there, 2: awake, 4: static, 8: kinematic

@@ -40,7 +40,8 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_createTarget(World* world, uint32_t index, ui
         return 0;
     return TakeJoint(world->System().Joints().CreateTarget(settings));
 }
-FULCRUM_FOR_JAVASCRIPT int fulcrum_setTarget(World* world, uint32_t index, uint32_t generation, double x, double y, double z) {
+FULCRUM_FOR_JAVASCRIPT int fulcrum_setTarget(World* world, uint32_t index, uint32_t generation, double x, double y,
+                                             double z) {
     return Outcome(world->System().Joints().SetTarget({index, generation}, Position(x, y, z)));
 }
 
@@ -68,7 +69,8 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_setMotor(World* world, uint32_t index, uint32
 // Input: limits, or null for none.
 FULCRUM_FOR_JAVASCRIPT int fulcrum_setLimits(World* world, uint32_t index, uint32_t generation, int axis) {
     JointInterface& joints = world->System().Joints();
-    if (Shared().input == "null") return Outcome(joints.SetLimits({index, generation}, static_cast<JointAxis>(axis), std::nullopt));
+    if (Shared().input == "null")
+        return Outcome(joints.SetLimits({index, generation}, static_cast<JointAxis>(axis), std::nullopt));
     JointLimits limits;
     if (!ReadInput("limits", [&](JsonReader& fields) { Describe(fields, limits); })) return 0;
     return Outcome(joints.SetLimits({index, generation}, static_cast<JointAxis>(axis), limits));

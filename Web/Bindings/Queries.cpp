@@ -26,7 +26,8 @@ struct QueryInput {
 bool Read(QueryInput& input, std::initializer_list<const char*> needed) {
     return ReadInput("query", [&](JsonReader& fields) {
         for (const char* name : needed)
-            if (!fields.Find(name) && !fields.Document().error) fields.Document().error = WrongAt(name, "it is missing");
+            if (!fields.Find(name) && !fields.Document().error)
+                fields.Document().error = WrongAt(name, "it is missing");
         fields.Field("origin", input.origin);
         fields.Field("position", input.position);
         fields.Field("displacement", input.displacement);
@@ -48,7 +49,7 @@ const ConvexShape* ConvexOf(const ShapePtr& shape) {
 }
 
 Json Written(const WorldRayHit& hit) {
-    return {{"body", IdOf(hit.body)},         {"child", hit.subShape.child},       {"fraction", hit.fraction},
+    return {{"body", IdOf(hit.body)},        {"child", hit.subShape.child},       {"fraction", hit.fraction},
             {"normal", ListOf3(hit.normal)}, {"position", ListOf3(hit.position)}, {"isBackFace", hit.isBackFace}};
 }
 
@@ -59,7 +60,8 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_castRay(World* world) {
     QueryInput input;
     WorldRayHit hit;
     if (!Read(input, {"origin", "displacement"})) return 0;
-    if (!world->System().Queries().CastRay({input.origin, input.displacement}, hit, {}, input.Filter())) return Answer(nullptr);
+    if (!world->System().Queries().CastRay({input.origin, input.displacement}, hit, {}, input.Filter()))
+        return Answer(nullptr);
     return Answer(Written(hit));
 }
 FULCRUM_FOR_JAVASCRIPT int fulcrum_castRayAll(World* world) {
@@ -102,7 +104,8 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_findClosest(World* world) {
     QueryInput input;
     WorldClosest closest;
     if (!Read(input, {"position"})) return 0;
-    if (!world->System().Queries().FindClosest(input.position, static_cast<float>(input.maxDistance), closest, input.Filter()))
+    if (!world->System().Queries().FindClosest(input.position, static_cast<float>(input.maxDistance), closest,
+                                               input.Filter()))
         return Answer(nullptr);
     return Answer({{"body", IdOf(closest.body)},
                    {"distance", closest.distance},

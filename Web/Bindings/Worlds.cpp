@@ -22,14 +22,10 @@ void PutHash(uint64_t hash) {
 }
 
 Json Written(const StepErrors& errors) {
-    return {{"areMeasured", errors.areMeasured},
-            {"energyChange", errors.energyChange},
-            {"energyGain", errors.energyGain},
-            {"mostGaining", IdOf(errors.mostGaining)},
-            {"momentumError", errors.momentumError},
-            {"angularMomentumError", errors.angularMomentumError},
-            {"pushEnergy", errors.pushEnergy},
-            {"largestPushEnergy", errors.largestPushEnergy},
+    return {{"areMeasured", errors.areMeasured},     {"energyChange", errors.energyChange},
+            {"energyGain", errors.energyGain},       {"mostGaining", IdOf(errors.mostGaining)},
+            {"momentumError", errors.momentumError}, {"angularMomentumError", errors.angularMomentumError},
+            {"pushEnergy", errors.pushEnergy},       {"largestPushEnergy", errors.largestPushEnergy},
             {"mostPushed", IdOf(errors.mostPushed)}};
 }
 
@@ -98,7 +94,8 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_step(World* world, double dt) {
 FULCRUM_FOR_JAVASCRIPT int fulcrum_report(World* world) {
     const StepReport& report = world->System().Report();
     Json stages = Json::object();
-    for (int stage = 0; stage < kStageCount; ++stage) stages[StageName(stage)] = report.stageMs[static_cast<size_t>(stage)];
+    for (int stage = 0; stage < kStageCount; ++stage)
+        stages[StageName(stage)] = report.stageMs[static_cast<size_t>(stage)];
     Json efforts = Json::array();
     for (const IslandEffortReport& effort : report.mostEffort)
         if (effort.substeps > 0)
@@ -132,7 +129,9 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_report(World* world) {
 FULCRUM_FOR_JAVASCRIPT void fulcrum_hashPoses(World* world) { PutHash(world->System().HashPoses()); }
 FULCRUM_FOR_JAVASCRIPT void fulcrum_hashState(World* world) { PutHash(world->System().HashState()); }
 FULCRUM_FOR_JAVASCRIPT double fulcrum_energy(World* world) { return world->System().GetEnergy(); }
-FULCRUM_FOR_JAVASCRIPT double fulcrum_memoryUsed(World* world) { return static_cast<double>(world->System().MemoryUsed()); }
+FULCRUM_FOR_JAVASCRIPT double fulcrum_memoryUsed(World* world) {
+    return static_cast<double>(world->System().MemoryUsed());
+}
 // Threads that step the world; fewer than asked for where the browser starts no more.
 FULCRUM_FOR_JAVASCRIPT int fulcrum_threads(World* world) {
     return world->threads ? static_cast<int>(world->threads->WorkerCount()) : 1;
