@@ -176,8 +176,9 @@ class Page {
     element('summary').innerHTML = `<div>${number(plots.recent('ms'), 'ms')}<span>a step</span></div>` +
       `<div>${number(plots.recent('penetration'), 'mm')}<span>penetration</span></div>` +
       (report.joints > 0 ? `<div>${number(plots.recent('joint-error'), 'mm')}<span>joint error</span></div>` : `<div><b>${report.contacts}</b><span>contacts</span></div>`) +
-      `<div><b>${report.awakeBodies} / ${report.bodies}</b><span>awake bodies</span></div><div><b>${most}</b><span>substeps, at most</span></div>` +
-      `<div><b>${report.islandsWithMoreEffort} / ${report.islands}</b><span>islands with more effort</span></div>`;
+      `<div><b>${report.awakeBodies}</b><span>awake of ${report.bodies}</span></div><div><b>${most}</b><span>substeps, at most</span></div>` +
+      `<div><b>${report.islandsWithMoreEffort}</b><span>of ${report.islands} islands with more effort</span></div>`;
+    element('curve-joint-error').hidden = report.joints === 0;
   }
 
   #listScenes() {

@@ -14,6 +14,12 @@ export const PLOTS = [
 
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1] ?? 0;
 
+// The top of a plot: few single steps, as the first, are far above all others, and would make these a flat line.
+function topOf(values) {
+  const sorted = values.filter(Number.isFinite).sort((a, b) => a - b);
+  return Math.min(sorted.at(-1) ?? 0, 3 * (sorted[Math.floor(0.97 * sorted.length)] ?? 0)) || 1;
+}
+
 export class Plots {
   constructor(place) {
     this.place = place;
@@ -80,7 +86,7 @@ export class Plots {
     const axis = { stroke: ink, grid: { stroke: line, width: 1 }, ticks: { show: false }, font: '10px system-ui, sans-serif' };
     const chart = new uPlot({
       width: this.#width, height: HEIGHT, legend: { show: false }, padding: [6, 6, 0, 0], cursor: { show: false },
-      scales: { x: { time: false }, y: { range: (_, low, high) => (low >= 0 ? [0, high > 0 ? 1.06 * high : 1] : uPlot.rangeNum(low, high, 0.06, true)) } },
+      scales: { x: { time: false }, y: { range: ({ data }, low, high) => (low >= 0 ? [0, 1.06 * topOf(data[1])] : uPlot.rangeNum(low, high, 0.06, true)) } },
       axes: [
         { ...axis, size: 18, gap: 2, space: 46, values: (_, splits) => splits.map((at) => `${short(at)} s`) },
         { ...axis, size: 44, gap: 3, space: 22, values: (_, splits) => splits.map(short) },

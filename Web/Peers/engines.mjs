@@ -119,7 +119,8 @@ async function jolt() {
     build({ bodies, joints = [], collides = true }) {
       const settings = new J.JoltSettings();
       settings.mMaxBodies = bodies.length + 10;
-      settings.mMaxBodyPairs = settings.mMaxContactConstraints = 100000;
+      settings.mMaxBodyPairs = 65536;
+      settings.mMaxContactConstraints = collides ? 20480 : 1024; // more does not fit into its memory for a step
       settings.mMaxWorkerThreads = 0;
       const pairs = new J.ObjectLayerPairFilterTable(2), layers = new J.BroadPhaseLayerInterfaceTable(2, 2);
       if (collides) {

@@ -84,6 +84,8 @@ export class Fulcrum {
   createScene(name: string, options?: {
     seed?: number; solver?: WorldSettings['solver']; gravityScale?: number; measuresErrors?: boolean; threads?: number;
   }): World;
+  /** Ends the threads, which keep node running. After that nothing of this may be used. */
+  close(): void;
 }
 
 /** Functions may be called by the thread that loaded the module alone. */

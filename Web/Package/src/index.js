@@ -65,6 +65,9 @@ export class Fulcrum {
     this.#module.putJson(description);
     return new Shape(this.#module, this.#module.must('createShape'));
   }
+
+  // Ends the threads, which keep node running. After that nothing of this may be used.
+  close() { this.#module.instance.PThread?.terminateAllThreads(); }
 }
 
 class Shape {

@@ -183,6 +183,7 @@ test('any number of threads gives the same hashes', async () => {
   const threaded = await load({ threads: 3 });
   assert.equal(threaded.threads, 3);
   for (const [scene, steps] of SCENES.slice(0, 3)) assert.equal(hashOf(threaded, scene, steps), hashOf(fulcrum, scene, steps), scene);
+  threaded.close();
 });
 
 test('memory of worlds is given back', () => {
