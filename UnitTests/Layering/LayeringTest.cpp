@@ -27,6 +27,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedFolders = {
     {"Physics", {"Math", "Collision", "Constraints", "Jobs"}},
     {"Assets", {"Math", "Collision", "Constraints", "Jobs", "Physics"}},
     {"Samples", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Assets"}},
+    {"Web", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Assets", "Samples"}},
     {"PerformanceTest", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Assets", "Samples", "UnitTests"}},
     {"UnitTests", {"Math", "Collision", "Constraints", "Jobs", "Physics", "Assets", "Samples", "PerformanceTest"}},
 };
