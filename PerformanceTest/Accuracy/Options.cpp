@@ -33,10 +33,9 @@ Status ChooseScenes(const std::string& name, LabOptions& lab) {
 
 Result<LabCommand> ParseAdvise(std::vector<std::string> arguments) {
     LabCommand command;
-    command.lab.isQuick = true;
-    command.lab.resumes = true;
+    command.lab.isQuick = command.lab.advises = command.lab.resumes = true;
     std::string name;
-    CLI::App app("Names the cheapest setting for your scene, or one of ours, from a short grid of runs",
+    CLI::App app("Names the cheapest setting or target for your scene, or one of ours, from a short grid of runs",
                  "./fulcrum advise");
     app.add_option("SCENE", name, "your scene: FILE.json or FILE.cbor; or one of ./fulcrum accuracy or ./fulcrum list")
         ->required();
