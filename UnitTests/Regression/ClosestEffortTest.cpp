@@ -112,6 +112,7 @@ TEST(ClosestEffort, OfFarChildrenIsBounded) {
         {.shape = Cylinder::CreateTapered(0.3f, 0.2f, 0.45f).Value(), .position = Vector3(0, 0.2f, 2 * kFar)}};
     const auto compound = Compound::Create(children).Value();
     const Vector3 first = compound->PoseOf(compound->ChildAt(0)).position;
+    double seconds = 0;
     for (int i = 0; i < Cases(60); ++i) {
         const SurfacePtr field = FieldOf(RandomHeights(random, 8), 8, i % 2 == 0);
         const Quaternion rotation = random.Rotation();
@@ -120,8 +121,9 @@ TEST(ClosestEffort, OfFarChildrenIsBounded) {
         ClosestPoints closest;
         EXPECT_TRUE(FindClosestPoints(*field, *compound, {there, rotation}, kInfinity, closest)) << i;
         EXPECT_TRUE(std::isfinite(closest.distance) && IsFinite(closest.normal)) << i;
-        EXPECT_LT(ProcessorSeconds() - begin, kIsSanitized ? 10 : 0.1) << i;
+        seconds += ProcessorSeconds() - begin;
     }
+    EXPECT_LT(seconds, kIsSanitized ? 60 : 4);
 }
 
 // Whatever is left out is farther away: each triangle of one against the other shape alone finds nothing closer.
