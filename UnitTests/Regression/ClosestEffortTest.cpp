@@ -1,6 +1,6 @@
 // The closest points of two shapes of many pieces take time in proportion to their pieces, not to the pairs of them:
-// two fields of 32 by 32 cells took 0.8 s, of 64 by 64 12 s. Nor do triangles that overlap and that are as long as the
-// rounding of their numbers is large take milliseconds a pair.
+// two fields of 32 by 32 cells took 0.8 s, of 64 by 64 12 s. Nor does each pair of pieces that overlap take a
+// millisecond where EPA fails: a compound of four children at a mesh of 128 triangles took 0.4 s.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
