@@ -14,6 +14,8 @@
 #include <immintrin.h>
 #elif defined(__SSE2__)
 #include <emmintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 // GCC and Clang warn that functions with vectors wider than a register have another ABI than on CPUs with such
@@ -57,13 +59,15 @@ inline constexpr int kLanes = FULCRUM_LANES;
     instantiate(1 __VA_OPT__(, ) __VA_ARGS__) instantiate(FULCRUM_LANES __VA_OPT__(, ) __VA_ARGS__)
 #endif
 
-// "scalar", "SSE2", "AVX2" or "vector": what this build was compiled for.
+// "scalar", "SSE2", "AVX2", "SIMD128" (of WebAssembly) or "vector": what this build was compiled for.
 #if defined(FULCRUM_SCALAR_LANES)
 inline constexpr const char* kSimdName = "scalar";
 #elif defined(__AVX2__)
 inline constexpr const char* kSimdName = "AVX2";
 #elif defined(__SSE2__)
 inline constexpr const char* kSimdName = "SSE2";
+#elif defined(__wasm_simd128__)
+inline constexpr const char* kSimdName = "SIMD128";
 #else
 inline constexpr const char* kSimdName = "vector";
 #endif
@@ -103,6 +107,19 @@ struct LaneTypes<16> {
     typedef int32_t Int FULCRUM_LANES_OF(16);
 };
 #undef FULCRUM_LANES_OF
+
+#if defined(__wasm_simd128__)
+// Applies an operation of WebAssembly to each register of `V`, which is one or several of them.
+template <class V, class Operation, class... More>
+FULCRUM_FORCE_INLINE V ByRegister(Operation operation, const V& first, const More&... more) {
+    V result;
+    for (size_t i = 0; i < sizeof(V) / 16; ++i) {
+        const auto part = [&](const auto& v) { return wasm_v128_load(reinterpret_cast<const char*>(&v) + 16 * i); };
+        wasm_v128_store(reinterpret_cast<char*>(&result) + 16 * i, operation(part(first), part(more)...));
+    }
+    return result;
+}
+#endif
 }  // namespace registers
 
 // A mask: one truth value per lane.
@@ -125,6 +142,14 @@ struct WideMask {
 #endif
 #if defined(__SSE2__)
         if constexpr (N == 4) return static_cast<uint32_t>(_mm_movemask_ps((__m128)bits));
+#endif
+#if defined(__wasm_simd128__)
+        if constexpr (N >= 4) {
+            uint32_t found = 0;
+            for (int i = 0; i < N / 4; ++i)
+                found |= static_cast<uint32_t>(wasm_i32x4_bitmask(wasm_v128_load(reinterpret_cast<const char*>(&bits) + 16 * i))) << 4 * i;
+            return found;
+        }
 #endif
         uint32_t result = 0;
         for (int i = 0; i < N; ++i) result |= static_cast<uint32_t>((*this)[i]) << i;
@@ -228,6 +253,10 @@ inline Wide<N> Select(WideMask<N> mask, Wide<N> a, Wide<N> b) {
     if constexpr (N == 8)
         return Wide<N>::Of((typename Wide<N>::Float)_mm256_blendv_ps((__m256)b.v, (__m256)a.v, (__m256)mask.bits));
 #endif
+#if defined(__wasm_simd128__)
+    if constexpr (N >= 4)
+        return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y, v128_t m) { return wasm_v128_bitselect(x, y, m); }, a.v, b.v, mask.bits));
+#endif
     return Wide<N>::Of(mask.bits ? a.v : b.v);
 }
 inline float Select(bool mask, float a, float b) { return mask ? a : b; }
@@ -241,6 +270,9 @@ inline Wide<N> Min(Wide<N> a, Wide<N> b) {
 #if defined(__SSE2__)
     if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_min_ps((__m128)a.v, (__m128)b.v));
 #endif
+#if defined(__wasm_simd128__)
+    if constexpr (N >= 4) return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y) { return wasm_f32x4_pmin(y, x); }, a.v, b.v));
+#endif
     return Select(a < b, a, b);
 }
 template <int N>
@@ -250,6 +282,9 @@ inline Wide<N> Max(Wide<N> a, Wide<N> b) {
 #endif
 #if defined(__SSE2__)
     if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_max_ps((__m128)a.v, (__m128)b.v));
+#endif
+#if defined(__wasm_simd128__)
+    if constexpr (N >= 4) return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y) { return wasm_f32x4_pmax(y, x); }, a.v, b.v));
 #endif
     return Select(a > b, a, b);
 }
@@ -269,6 +304,9 @@ inline Wide<N> Sqrt(Wide<N> a) {
 #endif
 #if defined(__SSE2__)
     if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_sqrt_ps((__m128)a.v));
+#endif
+#if defined(__wasm_simd128__)
+    if constexpr (N >= 4) return Wide<N>::Of(registers::ByRegister([](v128_t x) { return wasm_f32x4_sqrt(x); }, a.v));
 #endif
     Wide<N> r;
     for (int i = 0; i < N; ++i) r.Set(i, detail::SquareRoot(a[i]));
@@ -322,6 +360,15 @@ FULCRUM_FORCE_INLINE void Transpose8(__m256 (&r)[8]) {
 FULCRUM_FORCE_INLINE void Transpose4(__m128& r0, __m128& r1, __m128& r2, __m128& r3) {
     _MM_TRANSPOSE4_PS(r0, r1, r2, r3);
 }
+#elif defined(__wasm_simd128__)
+FULCRUM_FORCE_INLINE void Transpose4(v128_t& r0, v128_t& r1, v128_t& r2, v128_t& r3) {
+    const v128_t a = wasm_i32x4_shuffle(r0, r1, 0, 4, 1, 5), b = wasm_i32x4_shuffle(r0, r1, 2, 6, 3, 7);
+    const v128_t c = wasm_i32x4_shuffle(r2, r3, 0, 4, 1, 5), d = wasm_i32x4_shuffle(r2, r3, 2, 6, 3, 7);
+    r0 = wasm_i64x2_shuffle(a, c, 0, 2);
+    r1 = wasm_i64x2_shuffle(a, c, 1, 3);
+    r2 = wasm_i64x2_shuffle(b, d, 0, 2);
+    r3 = wasm_i64x2_shuffle(b, d, 1, 3);
+}
 #endif
 }  // namespace registers
 
@@ -353,6 +400,17 @@ FULCRUM_FORCE_INLINE void GatherRows(const float* const (&rows)[N], Wide<N> (&ou
             out[4 * half + 1].v = (typename Wide<N>::Float)r1;
             out[4 * half + 2].v = (typename Wide<N>::Float)r2;
             out[4 * half + 3].v = (typename Wide<N>::Float)r3;
+        }
+        return;
+    }
+#endif
+#if defined(__wasm_simd128__)
+    if constexpr (N == 4) {
+        for (int half = 0; half < 2; ++half) {
+            v128_t r[4];
+            for (int i = 0; i < 4; ++i) r[i] = wasm_v128_load(rows[i] + 4 * half);
+            registers::Transpose4(r[0], r[1], r[2], r[3]);
+            for (int k = 0; k < 4; ++k) out[4 * half + k].v = (typename Wide<N>::Float)r[k];
         }
         return;
     }
@@ -405,6 +463,17 @@ FULCRUM_FORCE_INLINE void ScatterRows(float* const (&rows)[N], const Wide<N> (&i
                            (__m128)in[4 * half + 3].v};
             registers::Transpose4(r[0], r[1], r[2], r[3]);
             for (int i = 0; i < count; ++i) _mm_store_ps(rows[i] + 4 * half, r[i]);
+        }
+        return;
+    }
+#endif
+#if defined(__wasm_simd128__)
+    if constexpr (N == 4) {
+        for (int half = 0; half < 2; ++half) {
+            v128_t r[4];
+            for (int k = 0; k < 4; ++k) r[k] = (v128_t)in[4 * half + k].v;
+            registers::Transpose4(r[0], r[1], r[2], r[3]);
+            for (int i = 0; i < count; ++i) wasm_v128_store(rows[i] + 4 * half, r[i]);
         }
         return;
     }

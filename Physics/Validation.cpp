@@ -197,6 +197,8 @@ MaybeError Check(const SystemSettings& s) {
             CheckPositiveOrInfinite("exactJointLoad", s.exactJointLoad),
             CheckNotNegative("restitutionSpeed", s.restitutionSpeed), CheckPositive("boundsMargin", s.boundsMargin)))
         return e;
+    if (s.narrowPhase == NarrowPhaseMethod::Libccd && !HasLibccd())
+        return Error{ErrorCode::Unsupported, "narrowPhase is Libccd, which this build does not contain"};
     for (size_t i = 0; i < 32; ++i)
         for (size_t j = 0; j < i; ++j)
             if ((s.layerCollides[i] >> j & 1) != (s.layerCollides[j] >> i & 1))

@@ -44,7 +44,10 @@ install(FILES
   DESTINATION ${package_folder})
 
 # Whoever links the static libraries needs what these need; a shared one brings libccd itself.
-if(library_type STREQUAL "STATIC_LIBRARY")
+if(NOT FULCRUM_LIBCCD)
+  set(pkgconfig_requires "")
+  set(pkgconfig_requires_private "")
+elseif(library_type STREQUAL "STATIC_LIBRARY")
   set(pkgconfig_requires "ccd")
   set(pkgconfig_requires_private "")
 else()

@@ -1,7 +1,9 @@
 # The engine's five targets, and Assets beside them. Sources are found by folder: a new file needs no line here.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Threads REQUIRED)
-find_package(ccd REQUIRED)
+if(FULCRUM_LIBCCD)
+  find_package(ccd REQUIRED)
+endif()
 
 # Users include <Fulcrum/Physics/PhysicsSystem.h>, in tree and installed alike.
 set(FULCRUM_INCLUDE_ROOT ${CMAKE_CURRENT_BINARY_DIR}/include)
@@ -41,6 +43,11 @@ endfunction()
 function(fulcrum_library folder)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "PUBLIC;PRIVATE;PRECOMPILED")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  if(FULCRUM_LIBCCD)
+    list(FILTER sources EXCLUDE REGEX "/WithoutLibccd\\.cpp$")
+  else()
+    list(FILTER sources EXCLUDE REGEX "/Libccd\\.cpp$")
+  endif()
   if(sources)
     add_library(Fulcrum${folder} ${sources})
     fulcrum_compile_options(Fulcrum${folder})
@@ -61,8 +68,8 @@ endfunction()
 
 # Eigen solves trees of joints. No public header includes it, so programs do without.
 fulcrum_library(Math)
-fulcrum_library(Jobs PUBLIC Threads::Threads)
-fulcrum_library(Collision PUBLIC Fulcrum::Math PRIVATE ccd
+fulcrum_library(Jobs PUBLIC Fulcrum::Math Threads::Threads)
+fulcrum_library(Collision PUBLIC Fulcrum::Math PRIVATE $<$<BOOL:${FULCRUM_LIBCCD}>:ccd>
   PRECOMPILED <algorithm> <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>)
 fulcrum_library(Constraints PUBLIC Fulcrum::Math PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>
   PRECOMPILED <algorithm> <Fulcrum/Constraints/Joints/JointBatch.h>)

@@ -10,6 +10,8 @@ namespace fulcrum {
 // The narrow-phase algorithm. Automatic: the fastest exact function of the pair table. Libccd: libccd's GJK and EPA for
 // all contacts and queries, for comparison; much slower, and allocates memory. See Docs/Architecture.md.
 enum class NarrowPhaseMethod : uint8_t { Automatic, Libccd };
+// Whether this build contains libccd. Builds for WebAssembly do not.
+bool HasLibccd();
 
 struct CollideSettings {
     float speculativeDistance = 0.02f;  // m, > 0: shapes up to this far apart get contact points

@@ -143,6 +143,8 @@ double EpaTolerance(const ConvexShape& a, const ConvexShape& b) {
 
 }  // namespace
 
+bool HasLibccd() { return true; }
+
 LibccdResult LibccdPenetration(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, double margin,
                                LibccdAlgorithm algorithm) {
     LibccdResult result{LibccdResult::Status::Apart, Position::Zero(), 0, Position::Zero()};

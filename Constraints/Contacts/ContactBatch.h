@@ -46,7 +46,7 @@ struct FixedSide {
 // A manifold is valid for small rotations only: points at a distance r from the center of a body that rotates by an
 // angle t deviate by r t^2 / 2 from the straight line of the rows. And a body that slides over a surface gets to other
 // triangles. These are the largest deviation and the largest sliding, as fractions of the smaller inner radius.
-inline constexpr float kMostDeviation = 0.05f, kMostSliding = 0.25f;
+inline constexpr float kMostDeviation = 0.07f, kMostSliding = 0.25f;
 
 template <int N, bool kFixedB>
 struct ContactBatch {

@@ -91,7 +91,7 @@ FULCRUM_FORCE_INLINE void PrefetchAhead(const CollideStores& stores, uint32_t in
     PrefetchLines(&stores.pairs.records[pair.contact], sizeof(ContactRecord));
 }
 
-void CollideAllActive(const CollideStores& stores, std::vector<PairChange>& changes, const StepWorkers& workers) {
+void CollideAllActive(const CollideStores& stores, Array<PairChange>& changes, const StepWorkers& workers) {
     const IndexSet& active = stores.pairs.active;
     changes.resize(stores.pairs.pairs.size(), PairChange::None);
     workers.jobs.ParallelFor(active.WordCount(), 1, [&](JobRange range) {
@@ -104,7 +104,7 @@ void CollideAllActive(const CollideStores& stores, std::vector<PairChange>& chan
     });
 }
 
-void CollideListed(const CollideStores& stores, std::span<const uint32_t> list, std::vector<PairChange>& changes,
+void CollideListed(const CollideStores& stores, std::span<const uint32_t> list, Array<PairChange>& changes,
                    const StepWorkers& workers) {
     changes.resize(stores.pairs.pairs.size(), PairChange::None);
     workers.jobs.ParallelFor(static_cast<uint32_t>(list.size()), 16, [&](JobRange range) {

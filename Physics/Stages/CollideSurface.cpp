@@ -60,11 +60,11 @@ Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
 void WriteSurfaceManifolds(const CollideStores& stores, const PairView& view, uint32_t first, bool writesEmpty,
                            WorkerFindings& findings) {
     constexpr uint32_t kTaken = ~0u;
-    std::vector<uint32_t>& places = findings.surfacePlaces;
+    Array<uint32_t>& places = findings.surfacePlaces;
     places.clear();
     VisitManifolds(stores.pairs, first, [&](uint32_t index) { places.push_back(index); });
     const std::span<const SurfaceManifold> found = findings.surface.Manifolds();
-    std::vector<uint32_t>& left = findings.surfaceLeft;
+    Array<uint32_t>& left = findings.surfaceLeft;
     left.clear();
     for (uint32_t m = 0; m < found.size(); ++m) {
         int most = 0;
@@ -100,7 +100,7 @@ void FindSurfaceManifolds(const CollideStores& stores, const PairView& view, uin
     CollideSettings settings;
     settings.speculativeDistance = reach;
     settings.method = stores.step.settings.narrowPhase;
-    std::vector<uint32_t>& touched = findings.surfaceTouched;
+    Array<uint32_t>& touched = findings.surfaceTouched;
     touched.clear();
     VisitManifolds(stores.pairs, first, [&](uint32_t index) {
         const Pair& pair = stores.pairs.pairs[index];
@@ -116,7 +116,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     bool touches = false;
     VisitManifolds(stores.pairs, first, [&](uint32_t index) { touches |= stores.pairs.pairs[index].pointCount > 0; });
     const PairView view = ViewPair(stores, first);
-    std::vector<PairContact>& contacts = stores.pairs.contacts;
+    Array<PairContact>& contacts = stores.pairs.contacts;
     if (touches && HardlyMoved(view, contacts[view.pair.contact])) {
         ++findings.kept;
     } else {
@@ -142,7 +142,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
 }
 
 void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::span<WorkerFindings> workers) {
-    std::vector<MoreManifold>& all = updates.moreManifolds;
+    Array<MoreManifold>& all = updates.moreManifolds;
     all.clear();
     for (WorkerFindings& findings : workers) {
         all.insert(all.end(), findings.more.begin(), findings.more.end());

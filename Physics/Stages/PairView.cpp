@@ -1,7 +1,7 @@
 #include <Fulcrum/Physics/Stages/PairView.h>
 
 #include <Fulcrum/Collision/Shapes/Plane.h>
-#include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/SweepCast.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
@@ -17,9 +17,23 @@ namespace {
 constexpr float kKeptDistance = 1e-3f;  // m, but at most this fraction of the smaller body's size:
 constexpr float kKeptFraction = 2e-3f;
 constexpr float kKeptAngle = 1e-3f;  // rad
+// Normals rotate with body A. Of what rolls they would lean forward until the manifold is found anew, so that slow
+// balls would accelerate on a level floor.
+constexpr float kKeptAngleOfRound = 2e-5f;
 
 // Impulses are kept for warm starting if the cosine of the angle between the normals of two steps is at least this.
 constexpr float kSameNormal = 0.5f;
+
+bool IsRound(const Shape& shape) {
+    switch (shape.Type()) {
+        case ShapeType::Sphere:
+        case ShapeType::Capsule:
+        case ShapeType::TaperedCapsule:
+        case ShapeType::Cylinder:
+        case ShapeType::Custom: return true;
+        default: return false;
+    }
+}
 
 // Points are stored relative to the bodies, the narrow phase computes them relative to the shapes.
 Vector3 ToBody(const CollideStores& stores, const Pair& pair, uint32_t collider, const Vector3& point) {
@@ -132,14 +146,14 @@ Twist<float> DisplacementOf(const CollideStores& stores, uint32_t body) {
     return {Vector3(moved[0], moved[1], moved[2]), Vector3(turned[0], turned[1], turned[2])};
 }
 
-// Whether one of two bodies rotates so far in the step that it will collide again within it (Recollide.h).
-bool WillRotateFar(const CollideStores& stores, const Pair& pair) {
-    const auto rotatesFar = [&](uint32_t body, const Shape& shape) {
-        const float dt = stores.step.dt, inner = shape.InnerRadius();
-        return LengthSquared(stores.bodies.AngularVelocityOf(body)) * dt * dt * shape.OuterRadius() >
-               2 * kMostDeviation * inner;
+// Whether one of two bodies rotates so far in the step that it will collide again within it (Recollide.h). Beyond a
+// radian the points of the first substep would be far from the truth.
+bool WillCollideAgain(const CollideStores& stores, const Pair& pair) {
+    const auto will = [&](uint32_t body, const Shape& shape) {
+        const float dt = stores.step.dt, square = LengthSquared(stores.bodies.AngularVelocityOf(body)) * dt * dt;
+        return square * shape.OuterRadius() > 2 * kMostDeviation * shape.InnerRadius() && square < 1;
     };
-    return rotatesFar(pair.bodyA, *pair.shapeA) || (!pair.fixedB && rotatesFar(pair.bodyB, *pair.shapeB));
+    return will(pair.bodyA, *pair.shapeA) || (!pair.fixedB && will(pair.bodyB, *pair.shapeB));
 }
 
 // Clears the manifold.
@@ -154,7 +168,10 @@ void Forget(Pair& pair, ContactRecord& record) {
 Quaternion CollideStores::RotationOf(uint32_t body) const {
     const Quaternion before = bodies.RotationOf(body);
     if (elapsed == 0) return before;
-    return Normalized(RotationFromVector(DisplacementOf(*this, body).angular) * before);
+    const Vector3 turned = DisplacementOf(*this, body).angular;
+    const Vec2<float> half = HalfTurnOf<float>(turned);
+    return Normalized(Quaternion{turned.x() * half.x(), turned.y() * half.x(), turned.z() * half.x(), half.y()} *
+                      before);
 }
 
 Vector3 CollideStores::OffsetOf(uint32_t bodyA, uint32_t bodyB) const {
@@ -186,7 +203,9 @@ bool HardlyMoved(const PairView& v, const PairContact& contact) {
     const Quaternion& a = v.bInA.rotation;
     const Quaternion& b = old.rotation;
     const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
-    return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
+    const float squared = 4 * LengthSquared(d);
+    if (squared <= kKeptAngleOfRound * kKeptAngleOfRound) return true;
+    return squared <= kKeptAngle * kKeptAngle && !IsRound(*v.pair.shapeA) && !IsRound(*v.pair.shapeB);
 }
 
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {
@@ -251,7 +270,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
     // Speeds at the start of the step do not tell which points of fast rotating bodies may touch.
-    const bool keepsAll = stores.elapsed > 0 || WillRotateFar(stores, pair);
+    const bool keepsAll = stores.elapsed > 0 || WillCollideAgain(stores, pair);
     const float farEnd = FarEndFactor(stores.coloring, pair),
                 speculative = SpeculativeDistance(stores.step.settings, pair);
     int count = 0;
@@ -275,6 +294,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
             if (oldFeatures[j] == found.feature) record.impulse[count] = oldImpulses[j];
         contact.features[count++] = found.feature;
     }
+    std::fill(record.impulse + count, record.impulse + ContactRecord::kMaxPoints, 0.0f);
     record.pointCount = static_cast<float>(count);
     pair.pointCount = static_cast<uint8_t>(count);
     if (oldCount == 0) ForgetFriction(record);

@@ -21,7 +21,7 @@ struct CollideStores {
     const JointStore& joints;
     const ConstraintColoring& coloring;
     PairStore& pairs;
-    // s since the start of the step, if pairs collide again within it (Recollide.h); `step.dt` is what is left then.
+    // s since the start of the step, if pairs collide again within it (Recollide.h).
     float elapsed = 0;
 
     // Of the bodies' center frames at that time. Relative positions do not depend on the distance from the origin.

@@ -22,7 +22,7 @@ bool IsSolved(const Pair& pair) { return pair.touching && !pair.onSeam && pair.p
 bool RotateTooFast(const CollideStores& stores, const Pair& pair, float h) {
     constexpr float kMostInSubstep = 1, kMostOfKinematic = 0.5f;  // rad
     const Vector3 ofB = stores.bodies.AngularVelocityOf(pair.bodyB);
-    const float dt = stores.step.dt + stores.elapsed;
+    const float dt = stores.step.dt;
     if (pair.fixedB && LengthSquared(ofB) * dt * dt > kMostOfKinematic * kMostOfKinematic) return true;
     return LengthSquared(Vector3(stores.bodies.AngularVelocityOf(pair.bodyA) - ofB)) * h * h >
            kMostInSubstep * kMostInSubstep;
@@ -37,13 +37,14 @@ bool HasManyManifolds(const PairStore& pairs, uint32_t index) {
 }
 
 void MarkFound(PairStore& pairs, const Pair& pair) {
-    if (pair.touching) pairs.RecordOf(pair).Set(ContactRecord::kRecollided, true);
+    ContactRecord& record = pairs.RecordOf(pair);
+    if (pair.onSeam) record.pointCount = 0;  // as RemoveSeamContacts left it
+    else if (pair.touching) record.Set(ContactRecord::kRecollided, true);
 }
 
 }  // namespace
 
-void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, float h,
-                   WorkerFindings& findings) {
+void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, float h, WorkerFindings& findings) {
     PairStore& pairs = stores.pairs;
     uint32_t index = pairs.contacts[contact].pair;
     if (!IsSolved(pairs.pairs[index])) return;
@@ -52,6 +53,8 @@ void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, 
     if (pairs.pairs[index].isMore) index = pairs.Find(pairs.pairs[index].colliderA, pairs.pairs[index].colliderB);
     Pair& pair = pairs.pairs[index];
     const PairView view = ViewPair(stores, index);
+    // For the motion of a whole step, as at its start: with less, contacts of edges would lose the points of their
+    // faces.
     const float reach = PairReach(stores, pair).WithRotation(stores, pair);
     if (!pair.surface) {
         Manifold manifold;
@@ -106,7 +109,7 @@ void RefillContacts(const CollideStores& stores, const ContactPrepareSettings& s
     }
 }
 
-#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                           \
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                        \
     template void RefillContacts(const CollideStores&, const ContactPrepareSettings&, BodyStore&, \
                                  ContactBatch<lanes, fixedB>&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)

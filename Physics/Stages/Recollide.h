@@ -9,12 +9,11 @@
 
 namespace fulcrum {
 
-// Collides the pair of a contact again, all its manifolds if it is with a surface, at the poses of the stores' time. The
-// records of these must have the impulses of the last substep. rotated: it did not only slide, which is for surfaces:
-// seams of others would get contacts that RemoveSeamContacts removed. h: s, of a substep. Manifolds found in a contact that is solved already
-// replace it, others are left to the next step.
-void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, float h,
-                   WorkerFindings& findings);
+// Collides the pair of a contact again, all its manifolds if it is with a surface, at the poses of the stores' time.
+// The records of these must have the impulses of the last substep. rotated: it did not only slide, which is for
+// surfaces: seams of others would get contacts that RemoveSeamContacts removed. h: s, of a substep. Manifolds found in
+// a contact that is solved already replace it, others are left to the next step.
+void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, float h, WorkerFindings& findings);
 
 // Replaces the rows of the contacts of a batch that were found again, and forgets that.
 template <int N, bool kFixedB>

@@ -275,16 +275,14 @@ private:
             case Verb::Recollide: {
                 const uint32_t outdated = batch.rotated | batch.slid;
                 if (outdated == 0) break;
-                const StepContext left = StepAt(substep);
-                const CollideStores stores = StoresAt(left, substep);
+                const CollideStores stores = StoresAt(substep);
                 for (int lane = 0; lane < batch.count; ++lane)
                     if (outdated >> lane & 1u)
                         RecollidePair(stores, batch.contact[lane], batch.rotated >> lane & 1u, h_, findings);
                 break;
             }
             case Verb::Refill: {
-                const StepContext left = StepAt(substep);
-                RefillContacts(StoresAt(left, substep),
+                RefillContacts(StoresAt(substep),
                                {.impulseScale = 1,
                                 .restitutionSpeed = effort_.contacts.restitutionSpeed,
                                 .maxPushSpeed = stores_.step.settings.contactPushSpeed,
@@ -335,14 +333,10 @@ private:
     bool IsSkipped(Verb verb, uint8_t substep) const {
         return IsOfRecollision(verb) && lastOutdated_.load(std::memory_order_relaxed) != substep;
     }
-    StepContext StepAt(uint8_t substep) const {
-        StepContext left = stores_.step;
-        left.dt -= h_ * static_cast<float>(substep);
-        return left;
-    }
-    CollideStores StoresAt(const StepContext& left, uint8_t substep) const {
-        return {left,           stores_.bodies, stores_.colliders,
-                stores_.joints, stores_.coloring, stores_.pairs, h_ * static_cast<float>(substep)};
+    CollideStores StoresAt(uint8_t substep) const {
+        CollideStores stores = stores_;
+        stores.elapsed = h_ * static_cast<float>(substep);
+        return stores;
     }
 
     JointSolveSettings JointSettingsAt(Verb verb, uint8_t substep) const {
@@ -372,8 +366,8 @@ private:
     const Effort& effort_;
     BodyState* pseudo_;
     std::span<PushNote> pushes_;
-    ContactNote* notes_;  // by record; null without contact events
-    float h_;             // s, of a substep
+    ContactNote* notes_;                 // by record; null without contact events
+    float h_;                            // s, of a substep
     std::atomic<int> lastOutdated_ = 0;  // the substep, from 1, after which some contact was outdated last
 };
 
@@ -492,7 +486,8 @@ void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& p
     if (coloring.Size() == 0) return;
     const bool far =
         std::ranges::any_of(workers.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
-    RunVerbs({step, bodies, colliders, joints, coloring, pairs}, {step.settings, colliders, pairs, joints, bodies}, layout, far, pushes, workers,
+    RunVerbs({step, bodies, colliders, joints, coloring, pairs}, {step.settings, colliders, pairs, joints, bodies},
+             layout, far, pushes, workers,
              [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, pulls, workers.scratch); });
     if (pushes.empty()) return;
     for (const SolverGroup& group : layout.groups)

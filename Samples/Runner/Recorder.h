@@ -25,6 +25,9 @@ public:
     // After every step.
     void AfterStep();
 
+    // The body that a recorded one is, or whose child.
+    BodyId IdOf(uint32_t recorded) const { return ids_[recorded]; }
+
     Recording recording;
 
 private:

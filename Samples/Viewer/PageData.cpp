@@ -6,11 +6,9 @@
 #include <Fulcrum/Samples/Viewer/PageJoints.h>
 
 #include <nlohmann/json.hpp>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <new>
 
 namespace fulcrum {
 namespace {
@@ -244,17 +242,6 @@ std::string EncodePageData(const Recording& recording) {
     bytes += text;
     for (const std::string& column : columns) bytes += column;
     return bytes;
-}
-
-std::string Deflated(const std::string& bytes) {
-    uLongf size = compressBound(bytes.size());
-    std::string packed(size, '\0');
-    // Fails only if memory is exhausted; compressBound guarantees that `packed` is large enough.
-    if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                  bytes.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
-        throw std::bad_alloc();
-    packed.resize(size);
-    return packed;
 }
 
 }  // namespace fulcrum

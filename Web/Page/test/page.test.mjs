@@ -1,0 +1,149 @@
+// The live page in headless Chromium: a pile falls, a drag moves a body, a shot hits, the sliders act, and the hashes are those of the
+// package in node, with one thread and with several. `./fulcrum test` builds the page.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { existsSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import test, { after, before } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { load } from '../../Package/src/node.js';
+
+// The viewer's tests have the browser.
+const { launch } = await import(pathToFileURL(fileURLToPath(new URL('../../../Samples/Viewer/test/browser.mjs', import.meta.url))));
+const pathOf = (name) => fileURLToPath(new URL(name, import.meta.url));
+const html = pathOf('../../../build/webassembly/Web/web.html');
+
+let browser, complaints = [], requests = [];
+before(async () => {
+  assert.ok(existsSync(html), `${html} is missing: ./fulcrum web builds it`);
+  browser = await launch();
+});
+after(() => browser?.close());
+
+async function open(address) {
+  const page = await browser.newPage({ viewport: { width: 900, height: 500 } });
+  page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
+  page.on('pageerror', (error) => complaints.push(error.message));
+  page.on('request', (request) => requests.push(request.url()));
+  await page.goto(address);
+  await page.waitForFunction(() => window.fulcrum || /cannot/.test(document.getElementById('message').textContent), null, { timeout: 240000 });
+  assert.equal(await page.textContent('#message'), '');
+  return page;
+}
+const hashIn = (page, scene, steps) => page.evaluate(([name, count]) => {
+  window.fulcrum.start(name);
+  window.fulcrum.step(count);
+  return window.fulcrum.world.hashPoses().toString(16);
+}, [scene, steps]);
+async function hashInNode(scene, steps) {
+  const world = (await load()).createScene(scene, { measuresErrors: true });
+  for (let step = 0; step < steps; ++step) world.step(1 / 60);
+  return world.hashPoses().toString(16);
+}
+
+test('a pile falls while the page plays, and hashes are those of node', { timeout: 600000 }, async () => {
+  const page = await open(`${pathToFileURL(html)}#scene=pyramid&paused=1&theme=light`);
+  const height = () => page.evaluate(() => {
+    const { count, positions } = window.fulcrum.world.bodies.readAll();
+    return positions[3 * (count - 1) + 1];
+  });
+  const before = await height();
+  await page.evaluate(() => window.fulcrum.play());
+  await page.waitForFunction(() => window.fulcrum.steps > 20, null, { timeout: 240000 });
+  await page.evaluate(() => window.fulcrum.play(false));
+  assert.ok(await height() < before - 1, 'the top of the pyramid fell');
+  assert.match(await page.textContent('#clock'), /step \d+/);
+  assert.match(await page.textContent('#summary'), /ms.*penetration/s);
+  assert.equal(await hashIn(page, 'pyramid', 30), await hashInNode('pyramid', 30));
+  await page.close();
+});
+
+test('a drag moves a body, and what is beside bodies turns the camera', { timeout: 600000 }, async () => {
+  const page = await open(`${pathToFileURL(html)}#scene=dominoes&paused=1`);
+  const target = await page.evaluate(() => {
+    const { bodies } = window.fulcrum.world, all = bodies.readAll();
+    for (let index = 0; index < all.count; ++index) {
+      if ((all.flags[index] & 13) !== 1) continue;
+      const id = all.idAt(index), at = bodies.read(id).position, [x, y] = window.fulcrum.project(at);
+      if (document.elementFromPoint(x, y)?.id === 'canvas') return { id, at, x, y };
+    }
+    return undefined;
+  });
+  await page.mouse.move(target.x, target.y);
+  await page.mouse.down();
+  assert.equal(await page.evaluate(() => window.fulcrum.isHolding), true);
+  await page.mouse.move(target.x, target.y - 80, { steps: 4 });
+  await page.evaluate(() => window.fulcrum.step(45));
+  // What is in front of the body that was meant is as good.
+  const moved = await page.evaluate(() => {
+    const all = window.fulcrum.world.bodies.readAll();
+    return Math.max(...Array.from({ length: all.count }, (_, i) => all.positions[3 * i + 1]));
+  });
+  await page.mouse.up();
+  assert.equal(await page.evaluate(() => window.fulcrum.isHolding), false);
+  assert.ok(moved > target.at[1] + 0.05, `${moved} is above ${target.at[1]}`);
+  await page.close();
+});
+
+test('a shot adds a body that is drawn and hits', { timeout: 600000 }, async () => {
+  const page = await open(`${pathToFileURL(html)}#scene=card_house&paused=1`);
+  const count = () => page.evaluate(() => window.fulcrum.world.report.bodies);
+  await page.evaluate(() => window.fulcrum.step(2));
+  const before = await count();
+  const box = await page.locator('#canvas').boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.evaluate(() => { window.fulcrum.shoot(); window.fulcrum.step(30); });
+  assert.equal(await count(), before + 1);
+  await page.close();
+});
+
+test('the sliders act', { timeout: 600000 }, async () => {
+  const page = await open(`${pathToFileURL(html)}#scene=pyramid&paused=1`);
+  const set = (id, place) => page.evaluate(([name, value]) => {
+    const input = document.getElementById(`slider-${name}`);
+    input.value = value;
+    input.dispatchEvent(new Event('input'));
+  }, [id, place]);
+  const settings = () => page.evaluate(() => window.fulcrum.world.settings);
+  await set('substeps', 0);
+  assert.equal((await settings()).solver.substeps, 1);
+  await page.evaluate(() => window.fulcrum.step(150));
+  const coarse = await page.evaluate(() => window.fulcrum.report.largestPenetration);
+  await page.click('#presets button:nth-child(3)');
+  assert.deepEqual((({ substeps, velocityIterations, positionIterations }) => [substeps, velocityIterations, positionIterations])((await settings()).solver), [16, 1, 1]);
+  await page.evaluate(() => window.fulcrum.step(60));
+  const fine = await page.evaluate(() => window.fulcrum.report.largestPenetration);
+  assert.ok(fine < 0.7 * coarse, `${fine} m with 16 substeps, ${coarse} m with one`);
+  await set('penetration', 17);
+  await set('joint', 0);
+  const { accuracy } = await settings();
+  assert.equal(accuracy.penetration, Infinity);
+  assert.ok(Math.abs(accuracy.jointError - 1e-4) < 1e-9);
+  await set('rate', 9);
+  const passed = await page.evaluate(() => {
+    const text = () => Number(document.getElementById('clock').textContent.split(' ')[0]);
+    const from = text();
+    window.fulcrum.step(24);
+    return text() - from;
+  });
+  assert.ok(Math.abs(passed - 0.1) < 0.011, `24 steps of 1/240 s are ${passed} s`);
+  await page.close();
+});
+
+test('an isolated page has threads and the same hashes', { timeout: 600000 }, async () => {
+  const server = spawn(process.execPath, [pathOf('../serve.mjs'), html, '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  try {
+    const address = await new Promise((resolve) => server.stdout.on('data', (text) => resolve(String(text).match(/http\S+/)[0])));
+    const page = await open(`${address}#scene=pyramid&paused=1&threads=2`);
+    assert.equal(await page.evaluate(() => window.fulcrum.world.threads), 2);
+    assert.equal(await hashIn(page, 'pyramid', 30), await hashInNode('pyramid', 30));
+    await page.close();
+  } finally {
+    server.kill();
+  }
+});
+
+test('the page complains of nothing and asks no network', () => {
+  assert.deepEqual(complaints, []);
+  for (const request of requests) assert.match(request, /^(file:|blob:|data:|http:\/\/localhost:)/);
+});
