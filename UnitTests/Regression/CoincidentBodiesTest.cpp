@@ -182,7 +182,7 @@ TEST(CoincidentBodies, PlacesInTheBallAreApart) {
     for (const uint32_t count : {1u, 32u, 500u}) {
         const PlaceLimit floor{Vector3(0, 1, 0), -0.1f};
         for (const std::span<const PlaceLimit> limits : {std::span<const PlaceLimit>(), std::span(&floor, 1)}) {
-            const std::vector<Vector3> places = PlacesInBall(count, limits);
+            const auto places = PlacesInBall(count, limits);
             ASSERT_EQ(places.size(), count);
             // The nearest of a face-centered lattice with a unit ball's volume for so many, packed to sqrt(1/2) pi/3.
             const float nearest = 2 * static_cast<float>(std::cbrt(std::sqrt(0.5) * kPi / 3 / count));
