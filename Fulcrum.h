@@ -26,6 +26,8 @@
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Math/Trigonometry.h>
+#include <Fulcrum/Physics/Drawing/ShapeTriangles.h>
+#include <Fulcrum/Physics/Drawing/WorldDrawing.h>
 #include <Fulcrum/Physics/Fields/Fields.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>

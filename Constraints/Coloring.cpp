@@ -23,7 +23,7 @@ ColorSlot ConstraintColoring::Add(Kind kind, const Entry& entry, bool late) {
         place.color = static_cast<uint8_t>(late ? 63 - std::countl_one(used) : std::countr_one(used));
         VisitMoving(entry, [&](uint32_t body) { used_[body] |= uint64_t(1) << place.color; });
     }
-    std::vector<Entry>& list = List(place.color, kind);
+    Array<Entry>& list = List(place.color, kind);
     place.slot = static_cast<uint32_t>(list.size());
     // Grows by an eighth: doubling would leave up to half unused.
     if (list.size() == list.capacity()) list.reserve(list.size() + list.size() / 8 + 16);
@@ -39,7 +39,7 @@ uint32_t ConstraintColoring::Remove(Kind kind, const Entry& entry, ColorSlot pla
         if (place.color == kOverflow) --overflows_[body];
         else used_[body] &= ~(uint64_t(1) << place.color);
     });
-    std::vector<Entry>& list = List(place.color, kind);
+    Array<Entry>& list = List(place.color, kind);
     FULCRUM_ASSERT(entry.constraint == list[place.slot].constraint);
     const Entry moved = list.back();
     list[place.slot] = moved;
@@ -53,7 +53,7 @@ uint32_t ConstraintColoring::Remove(Kind kind, const Entry& entry, ColorSlot pla
 size_t ConstraintColoring::MemoryUsed() const {
     size_t bytes = used_.capacity() * sizeof(uint64_t) + overflows_.capacity() * sizeof(uint32_t);
     for (const Color& c : colors_)
-        for (const std::vector<Entry>& list : c.lists) bytes += list.capacity() * sizeof(Entry);
+        for (const Array<Entry>& list : c.lists) bytes += list.capacity() * sizeof(Entry);
     return bytes;
 }
 

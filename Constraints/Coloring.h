@@ -4,10 +4,11 @@
 // or destroyed. Serial and deterministic: the same calls give the same colors.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace fulcrum {
 
@@ -33,8 +34,8 @@ public:
     };
     static constexpr size_t kKinds = 3;
     struct Color {
-        std::array<std::vector<Entry>, kKinds> lists;
-        const std::vector<Entry>& Of(Kind kind) const { return lists[static_cast<size_t>(kind)]; }
+        std::array<Array<Entry>, kKinds> lists;
+        const Array<Entry>& Of(Kind kind) const { return lists[static_cast<size_t>(kind)]; }
         bool Empty() const { return lists[0].empty() && lists[1].empty() && lists[2].empty(); }
     };
 
@@ -71,11 +72,11 @@ private:
         if (!entry.fixedA) visit(entry.bodyA);
         if (!entry.fixedB) visit(entry.bodyB);
     }
-    std::vector<Entry>& List(uint8_t color, Kind kind) { return colors_[color].lists[static_cast<size_t>(kind)]; }
+    Array<Entry>& List(uint8_t color, Kind kind) { return colors_[color].lists[static_cast<size_t>(kind)]; }
 
-    std::vector<Color> colors_ = std::vector<Color>(kColors + 1);
-    std::vector<uint64_t> used_;       // by body: bit c is set if a constraint of color c moves it
-    std::vector<uint32_t> overflows_;  // by body: number of its constraints without a color
+    Array<Color> colors_ = Array<Color>(kColors + 1);
+    Array<uint64_t> used_;       // by body: bit c is set if a constraint of color c moves it
+    Array<uint32_t> overflows_;  // by body: number of its constraints without a color
     uint32_t size_ = 0;
     uint64_t version_ = 1, jointVersion_ = 1;
 };

@@ -1,11 +1,11 @@
 // Writes the measured figures of Docs/figures.json into README.md and Docs/*.md, between the marks
-// <!-- figures: NAME --> and <!-- /figures -->. ./fulcrum figures starts it; Docs/Performance.md says how figures get here.
+// <!-- figures: NAME --> and <!-- /figures -->, and into Docs/drawings/speed.svg. ./fulcrum figures starts it; Docs/Performance.md says how figures get here.
 //   figures.mjs                                writes the documents
 //   figures.mjs --check                        fails where a document does not say what the JSON says
 //   figures.mjs --take BENCH.json ... [--bullet MS.json]
 //                                              first puts what `fulcrum bench --json` wrote into the JSON; with --peer bullet
 //                                              it has Bullet's times, else MS.json has them, ms with one thread by scene
-import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
@@ -43,14 +43,34 @@ function sceneTable({ scenes }) {
   return table(hasPenetration ? [...heading, 'largest penetration'] : heading, rows);
 }
 
-// What fits the first page.
-const SHOWN = ['pyramid', 'hull_pile', 'drum', 'joint_grid', 'ragdolls', 'high_speed', 'mostly_asleep'];
-function summaryTable({ scenes }) {
-  const rows = scenes.filter(({ name }) => SHOWN.includes(name)).map((scene) => [
-    `\`${scene.name}\``, scene.what.replace('#', thousands(scene.joints ?? 0)), milliseconds(scene.threads[1].ms),
-    ratio(scene.threads[1].ratio), accuracyText(scene),
-  ]);
-  return table(['scene', 'what', 'ms', 'over Bullet', 'accuracy figure'], rows);
+// Speed and accuracy in one picture: of each scene the time of a step as a part of Bullet's, and how exact the result is.
+function speedPicture({ scenes }) {
+  const WIDTH = 900, TOP = 44, ROW = 36, LEFT = 298, BARS = 330, RIGHT = LEFT + BARS + 24;
+  const escape = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('`', '');
+  const rows = scenes.map((scene, i) => {
+    const y = TOP + i * ROW, { ms, ratio: part } = scene.threads[1], end = LEFT + Math.max(2, BARS * part), isInside = part > 0.45;
+    const [what] = scene.what.replace('#', thousands(scene.joints ?? 0)).split(', as one batch');
+    return `<g>
+<text x="16" y="${y + 13}" class="name">${scene.name}</text>
+<text x="16" y="${y + 28}" class="small">${escape(what)}</text>
+<rect x="${LEFT}" y="${y + 5}" width="${BARS}" height="20" rx="3" fill="#e4e8ec"/>
+<rect x="${LEFT}" y="${y + 5}" width="${(end - LEFT).toFixed(1)}" height="20" rx="3" fill="#4f86d9"/>
+<text x="${(isInside ? end - 6 : end + 6).toFixed(1)}" y="${y + 19}"${isInside ? ' text-anchor="end" fill="#fff"' : ''}>${milliseconds(ms)} ms</text>
+${part > 0.74 ? '' : `<text x="${LEFT + BARS - 6}" y="${y + 19}" text-anchor="end" class="small">Bullet ${scene.bullet_ms} ms</text>
+`}<text x="${RIGHT}" y="${y + 19}">${escape(accuracyText(scene))}</text>
+</g>`;
+  });
+  const height = TOP + scenes.length * ROW + 12;
+  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${WIDTH} ${height}" width="${WIDTH}" height="${height}">
+<title>Milliseconds a step with one thread beside Bullet 3.24, and how exact the result is</title>
+<style>text { font: 13px system-ui, "Segoe UI", "DejaVu Sans", sans-serif; } .name { font-weight: 600; } .small { font-size: 11px; fill: #66727f; } .head { fill: #66727f; }</style>
+<rect width="${WIDTH}" height="${height}" fill="#fff"/>
+<g fill="#1b2530">
+<text x="16" y="26" class="head">scene</text><text x="${LEFT}" y="26" class="head">a step with one thread; the whole bar: Bullet 3.24</text><text x="${RIGHT}" y="26" class="head">accuracy figure</text>
+${rows.join('\n')}
+</g>
+</svg>
+`;
 }
 
 // Of the scenes' ends: Samples/Scenes/RestMeters.h.
@@ -96,7 +116,7 @@ function settingsTable({ scenes }) {
   return table(['scene', '(4, 1, 1), the default', '(1, 10, 2)'], rows);
 }
 
-const BLOCKS = { scenes: sceneTable, summary: summaryTable, rest: restTable, stages: stageTable, settings: settingsTable, 'missed aims': missedAims };
+const BLOCKS = { scenes: sceneTable, rest: restTable, stages: stageTable, settings: settingsTable, 'missed aims': missedAims };
 const INLINE = {
   'ns of a single ray': ({ scenes }) => thousands(Math.round(scenes.find(({ name }) => name === 'rays').single_ns)),
   'times of Bullet': bulletTimes,
@@ -121,13 +141,16 @@ export function written(text, figures, file) {
 
 const documents = () => ['README.md', ...readdirSync(join(root, 'Docs')).filter((name) => name.endsWith('.md')).map((name) => `Docs/${name}`)];
 
+// Of what is written whole.
+const DRAWINGS = { 'Docs/drawings/speed.svg': speedPicture };
+
 function writeDocuments(figures, isCheck) {
   let wrong = 0;
   const used = new Set();
-  for (const file of documents()) {
-    const text = readFileSync(join(root, file), 'utf8');
+  for (const file of [...documents(), ...Object.keys(DRAWINGS)]) {
+    const text = existsSync(join(root, file)) ? readFileSync(join(root, file), 'utf8') : '';
     for (const [, name] of text.matchAll(/<!-- figures: ([^>]*?) -->/g)) used.add(name);
-    const wanted = written(text, figures, file);
+    const wanted = DRAWINGS[file]?.(figures) ?? written(text, figures, file);
     if (wanted === text) continue;
     if (!isCheck) {
       writeFileSync(join(root, file), wanted);

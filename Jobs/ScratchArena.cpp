@@ -11,8 +11,8 @@ constexpr size_t kFirstBlockBytes = 64 * 1024;
 // Each block is as large as all before it together: the capacity doubles, so there are few blocks.
 void ScratchArena::AddBlock(size_t minimumBytes) {
     const size_t bytes = std::max({minimumBytes, capacity_, kFirstBlockBytes});
-    blocks_.emplace_back(static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kAlignment})));
-    next_ = blocks_.back().get();
+    blocks_.emplace_back(bytes);
+    next_ = blocks_.back().Begin();
     left_ = bytes;
     capacity_ += bytes;
 }
@@ -26,7 +26,7 @@ void ScratchArena::Reset() {
         left_ = capacity_ = 0;
         AddBlock(total);
     }
-    next_ = blocks_.front().get();
+    next_ = blocks_.front().Begin();
     left_ = capacity_;
 }
 

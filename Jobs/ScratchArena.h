@@ -1,12 +1,13 @@
 // Arena (bump) allocator for one step: freed all at once. Each worker of each PhysicsSystem has one. Not thread-safe.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
+
 #include <cstddef>
-#include <memory>
 #include <new>
 #include <span>
 #include <type_traits>
-#include <vector>
+#include <utility>
 
 namespace fulcrum {
 
@@ -35,8 +36,22 @@ public:
 private:
     static constexpr size_t kMaximumBytes = size_t{1} << (8 * sizeof(size_t) - 2);
 
-    struct Release {
-        void operator()(std::byte* block) const { ::operator delete (block, std::align_val_t{kAlignment}); }
+    class Block {
+    public:
+        explicit Block(size_t bytes)
+            : memory_(tCurrentMemory), bytes_(bytes), begin_(AllocateFrom(memory_, bytes, kAlignment)) {}
+        Block(Block&& other) noexcept
+            : memory_(other.memory_), bytes_(other.bytes_), begin_(std::exchange(other.begin_, nullptr)) {}
+        ~Block() {
+            if (begin_) DeallocateTo(memory_, begin_, bytes_, kAlignment);
+        }
+        Block& operator=(Block&&) = delete;
+        std::byte* Begin() const { return static_cast<std::byte*>(begin_); }
+
+    private:
+        MemoryResource* memory_;
+        size_t bytes_;
+        void* begin_;
     };
 
     void* AllocateBytes(size_t bytes) {
@@ -49,7 +64,7 @@ private:
     }
     void AddBlock(size_t minimumBytes);
 
-    std::vector<std::unique_ptr<std::byte, Release>> blocks_;  // the last one is in use
+    Array<Block> blocks_;  // the last one is in use
     std::byte* next_ = nullptr;
     size_t left_ = 0;      // bytes from next_ to the end of the last block
     size_t capacity_ = 0;  // bytes of all blocks

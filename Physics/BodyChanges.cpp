@@ -4,6 +4,7 @@
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
+#include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
 #include <Fulcrum/Physics/World/Filters.h>
@@ -169,7 +170,8 @@ Status BodyInterface::SetMass(BodyId id, float mass, const SymmetricMatrix3& ine
 }
 
 SymmetricMatrix3 BodyInterface::GetInertia(BodyId id) const {
-    if (!Exists(id) || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return {};
+    const BodyReading reading(world_, locks_, id);
+    if (!reading || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return {};
     const KeptMass mass = MassOf(world_.bodies.dynamics[id.index]);
     return RotatedDiagonal(ToMatrix(mass.principalAxes), mass.inertia);
 }
@@ -180,7 +182,7 @@ Status BodyInterface::SetPoses(std::span<const BodyId> ids, std::span<const Pose
     if (ids.size() != poses.size())
         return Error{ErrorCode::OutOfRange, "there are " + std::to_string(ids.size()) + " bodies and " +
                                                 std::to_string(poses.size()) + " poses; each body needs one"};
-    std::vector<BodyPlace> places;
+    Array<BodyPlace> places;
     for (size_t i = 0; i < ids.size(); ++i) {
         if (!Exists(ids[i])) return Unknown(ids[i]);
         if (MaybeError e =
@@ -188,7 +190,7 @@ Status BodyInterface::SetPoses(std::span<const BodyId> ids, std::span<const Pose
             return *e;
         places.push_back({ids[i].index, {poses[i].position, NormalizedUnlessItIs(poses[i].rotation)}});
     }
-    std::vector<BodyId> sorted(ids.begin(), ids.end());
+    Array<BodyId> sorted(ids.begin(), ids.end());
     std::ranges::sort(sorted);
     if (std::ranges::adjacent_find(sorted) != sorted.end())
         return Error{ErrorCode::Unsupported, "a body is named twice; it can be in one place"};
@@ -217,7 +219,8 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
 }
 
 Material BodyInterface::GetMaterial(BodyId id) const {
-    return Exists(id) ? world_.bodies.cold[id.index].material : Material{.friction = 0};
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.cold[id.index].material : Material{.friction = 0};
 }
 
 Status BodyInterface::SetLayer(BodyId id, uint8_t layer) {
@@ -366,33 +369,45 @@ Status BodyInterface::SetAllowSleep(BodyId id, bool allowSleep) {
 }
 
 float BodyInterface::GetGravityFactor(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].gravityFactor : 0.0f;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].gravityFactor : 0.0f;
 }
 Vector3 BodyInterface::GetGravity(BodyId id) const {
-    return Exists(id) ? world_.bodies.GravityOf(id.index, world_.settings.gravity) : Vector3(Vector3::Zero());
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.GravityOf(id.index, world_.settings.gravity) : Vector3(Vector3::Zero());
 }
 float BodyInterface::GetLinearDamping(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].linearDamping : 0.0f;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].linearDamping : 0.0f;
 }
 float BodyInterface::GetAngularDamping(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].angularDamping : 0.0f;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].angularDamping : 0.0f;
 }
 LockedAxes BodyInterface::GetLockedAxes(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].lockedAxes : LockedAxes::None;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].lockedAxes : LockedAxes::None;
 }
 float BodyInterface::GetMaxLinearSpeed(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].maxLinearSpeed : 0.0f;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].maxLinearSpeed : 0.0f;
 }
 float BodyInterface::GetMaxAngularSpeed(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].maxAngularSpeed : 0.0f;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].maxAngularSpeed : 0.0f;
 }
 uint8_t BodyInterface::GetLayer(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].layer : uint8_t{0};
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].layer : uint8_t{0};
 }
-bool BodyInterface::AllowsSleep(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].allowSleep; }
+bool BodyInterface::AllowsSleep(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading && world_.bodies.dynamics[id.index].allowSleep;
+}
 
 BodyBounds BodyInterface::GetBounds(BodyId id) const {
-    if (!Exists(id)) return {};
+    const BodyReading reading(world_, locks_, id);
+    if (!reading) return {};
     Bounds all;
     VisitColliders(world_, id.index,
                    [&](uint32_t collider) { all.Include(TightBoundsOf(world_.bodies, world_.colliders, collider)); });

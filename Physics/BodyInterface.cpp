@@ -5,6 +5,7 @@
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
+#include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
 #include <Fulcrum/Physics/World/Sleeping.h>
@@ -124,7 +125,7 @@ float ImpulseOf(PairStore& pairs, uint32_t pair) {
 // only read.
 constexpr int kDeepest = 64;
 void Unload(WorldState& world, uint32_t body, uint32_t from, float load, int depth = 0) {
-    std::vector<std::pair<uint32_t, float>> contacts;
+    Array<std::pair<uint32_t, float>> contacts;
     float sum = 0;
     VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body, 1}, [&](uint32_t pair) {
         const Pair& of = world.pairs.pairs[pair];
@@ -201,7 +202,10 @@ Status BodyInterface::Remove(BodyId id) {
     return Done{};
 }
 
-bool BodyInterface::Exists(BodyId id) const { return world_.bodies.Find(id); }
+bool BodyInterface::Exists(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return static_cast<bool>(reading);
+}
 
 Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Quaternion& rotation, float dt) {
     const WorldChange<&BodyInterface::MoveKinematic> change(world_, id, position, rotation, dt);
@@ -371,65 +375,97 @@ Status BodyInterface::Sleep(BodyId id) {
 }
 
 Pose BodyInterface::GetPose(BodyId id) const {
-    if (!Exists(id)) return {};
+    const BodyReading reading(world_, locks_, id);
+    if (!reading) return {};
     const Quaternion rotation = world_.bodies.RotationOf(id.index);
     const Vector3 offset = world_.bodies.cold[id.index].shape->Mass().centerOfMass;
     return {world_.bodies.ExactCenterOf(id.index) - Rotate(rotation, offset).cast<double>(), rotation};
 }
 
 Position BodyInterface::GetCenterOfMass(BodyId id) const {
-    return Exists(id) ? world_.bodies.ExactCenterOf(id.index) : Position(Position::Zero());
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.ExactCenterOf(id.index) : Position(Position::Zero());
 }
 Vector3 BodyInterface::GetLinearVelocity(BodyId id) const {
-    return Exists(id) ? world_.bodies.LinearVelocityOf(id.index) : Vector3(Vector3::Zero());
+    const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
+    return reading ? world_.bodies.LinearVelocityOf(id.index) : Vector3(Vector3::Zero());
 }
 Vector3 BodyInterface::GetAngularVelocity(BodyId id) const {
-    return Exists(id) ? world_.bodies.AngularVelocityOf(id.index) : Vector3(Vector3::Zero());
+    const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
+    return reading ? world_.bodies.AngularVelocityOf(id.index) : Vector3(Vector3::Zero());
 }
 Vector3 BodyInterface::GetVelocityAt(BodyId id, const Position& point) const {
-    if (!Exists(id)) return Vector3::Zero();
+    const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
+    if (!reading) return Vector3::Zero();
     return GetLinearVelocity(id) + Cross<float>(GetAngularVelocity(id), ArmTo(world_, id, point));
 }
 float BodyInterface::GetMass(BodyId id) const {
-    if (!Exists(id)) return 0;
+    const BodyReading reading(world_, locks_, id);
+    if (!reading) return 0;
     const float inverse = world_.bodies.dynamics[id.index].inverseMass;
     return inverse > 0 ? 1.0f / inverse : 0.0f;
 }
 Vector3 BodyInterface::GetAngularMomentum(BodyId id) const {
-    if (!Exists(id)) return Vector3::Zero();
+    const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
+    if (!reading) return Vector3::Zero();
     return AngularMomentum(world_.bodies.dynamics[id.index], world_.bodies.RotationOf(id.index),
                            GetAngularVelocity(id));
 }
 double BodyInterface::GetKineticEnergy(BodyId id) const {
-    if (!Exists(id) || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return 0;
+    const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
+    if (!reading || world_.bodies.dynamics[id.index].motion != MotionType::Dynamic) return 0;
     const Position v = GetLinearVelocity(id).cast<double>();
     return 0.5 * double{GetMass(id)} * Dot<double>(v, v) + RotationalEnergy(world_.bodies.dynamics[id.index],
                                                                             world_.bodies.RotationOf(id.index),
                                                                             GetAngularVelocity(id));
 }
 MotionType BodyInterface::GetMotionType(BodyId id) const {
-    return Exists(id) ? world_.bodies.dynamics[id.index].motion : MotionType::Static;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.dynamics[id.index].motion : MotionType::Static;
 }
 ContinuousCollision BodyInterface::GetContinuous(BodyId id) const {
-    return Exists(id) ? world_.bodies.cold[id.index].continuous : ContinuousCollision::Off;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.cold[id.index].continuous : ContinuousCollision::Off;
 }
-ShapePtr BodyInterface::GetShape(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].shape : nullptr; }
+ShapePtr BodyInterface::GetShape(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.cold[id.index].shape : nullptr;
+}
 uint64_t BodyInterface::GetCategory(BodyId id) const {
-    return Exists(id) ? world_.bodies.FilterOf(id.index).category : 0;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.FilterOf(id.index).category : 0;
 }
-uint64_t BodyInterface::GetMask(BodyId id) const { return Exists(id) ? world_.bodies.FilterOf(id.index).mask : 0; }
+uint64_t BodyInterface::GetMask(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.FilterOf(id.index).mask : 0;
+}
 CollisionGroup BodyInterface::GetGroup(BodyId id) const {
-    return Exists(id) ? world_.bodies.FilterOf(id.index).group : CollisionGroup{};
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.FilterOf(id.index).group : CollisionGroup{};
 }
-uint64_t BodyInterface::GetUserData(BodyId id) const { return Exists(id) ? world_.bodies.cold[id.index].userData : 0; }
+uint64_t BodyInterface::GetUserData(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.cold[id.index].userData : 0;
+}
 float BodyInterface::GetPenetrationTarget(BodyId id) const {
-    return Exists(id) ? world_.bodies.cold[id.index].penetrationTarget : 0;
+    const BodyReading reading(world_, locks_, id);
+    return reading ? world_.bodies.cold[id.index].penetrationTarget : 0;
 }
 bool BodyInterface::ReportsContacts(BodyId id) const {
-    return Exists(id) && world_.bodies.reportsContacts.Contains(id.index);
+    const BodyReading reading(world_, locks_, id);
+    return reading && world_.bodies.reportsContacts.Contains(id.index);
 }
-bool BodyInterface::IsSensor(BodyId id) const { return Exists(id) && world_.bodies.cold[id.index].isSensor; }
-bool BodyInterface::IsAwake(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].awake; }
-bool BodyInterface::IsFrozen(BodyId id) const { return Exists(id) && world_.bodies.dynamics[id.index].frozen; }
+bool BodyInterface::IsSensor(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading && world_.bodies.cold[id.index].isSensor;
+}
+bool BodyInterface::IsAwake(BodyId id) const {
+    const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
+    return reading && world_.bodies.dynamics[id.index].awake;
+}
+bool BodyInterface::IsFrozen(BodyId id) const {
+    const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
+    return reading && world_.bodies.dynamics[id.index].frozen;
+}
 
 }  // namespace fulcrum

@@ -1,5 +1,10 @@
-// Creates, removes, moves and reads bodies. From PhysicsSystem::Bodies(); call it between steps, from one thread at a
-// time (concurrent reads are allowed). Poses are those of the shape's own frame, in which the user described it.
+// Creates, removes, moves and reads bodies. Poses are those of the shape's own frame, in which the user described it.
+//
+// Changes may be made by any thread at any time: each waits until no other thread steps, changes or reads the world,
+// and is seen by all of them as a whole. Getters of PhysicsSystem::Bodies() do not lock, and are as fast as reading an
+// array: call them only while no other thread changes or steps the world. Those of PhysicsSystem::LockingBodies() lock
+// the world for the call. While another thread steps, they return the state of the last step: most without waiting for
+// the step to end, those of velocities, energy, momentum, IsAwake and IsFrozen after it.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
@@ -34,7 +39,7 @@ struct RadialImpulse {
 
 class BodyInterface {
 public:
-    explicit BodyInterface(WorldState& world) : world_(world) {}
+    explicit BodyInterface(WorldState& world, bool locks = false) : world_(world), locks_(locks) {}
 
     // Errors name the field: NonFinite, NonPositive, Negative, OutOfRange, Unnormalized, Unsupported (no shape; a
     // dynamic body asleep that is not dynamic). Nothing is created then.
@@ -184,6 +189,7 @@ public:
 
 private:
     WorldState& world_;
+    const bool locks_;  // whether getters lock the world
 };
 
 }  // namespace fulcrum

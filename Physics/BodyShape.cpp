@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
+#include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/Waking.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
 
@@ -100,7 +101,8 @@ Status BodyInterface::RemoveChild(BodyId id, ChildId child, MassUpdate mass) {
 }
 
 const MutableCompound* BodyInterface::GetChildren(BodyId id) const {
-    const bool has = Exists(id) && world_.bodies.cold[id.index].children;
+    const BodyReading reading(world_, locks_, id);
+    const bool has = reading && world_.bodies.cold[id.index].children;
     return has ? world_.bodies.cold[id.index].children->compound : nullptr;
 }
 

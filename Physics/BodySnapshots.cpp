@@ -66,7 +66,7 @@ SavedBody Describe(const BodyStore& bodies, BodyId id) {
             cold.singleMove};
 }
 
-SavedJoint Describe(const JointStore& joints, uint32_t index, std::vector<std::byte>& settings) {
+SavedJoint Describe(const JointStore& joints, uint32_t index, Array<std::byte>& settings) {
     JointType& type = *joints.types[index];
     ReadSettings(type, settings);
     SavedJoint saved{joints.IdOf(index), HashBytes(settings.data(), settings.size(), KindHash(type)),
@@ -78,8 +78,8 @@ SavedJoint Describe(const JointStore& joints, uint32_t index, std::vector<std::b
 }
 
 // The joints both of whose bodies are among these.
-std::vector<uint32_t> JointsBetween(const JointStore& joints, std::span<const BodyId> bodies) {
-    std::vector<uint32_t> members, found;
+Array<uint32_t> JointsBetween(const JointStore& joints, std::span<const BodyId> bodies) {
+    Array<uint32_t> members, found;
     for (const BodyId body : bodies) members.push_back(body.index);
     std::ranges::sort(members);
     for (const BodyId body : bodies)
@@ -104,7 +104,7 @@ MaybeError CheckBodies(const BodyStore& bodies, std::span<const SavedBody> saved
     return std::nullopt;
 }
 
-MaybeError CheckJoints(const JointStore& joints, std::span<const SavedJoint> saved, std::vector<std::byte>& settings) {
+MaybeError CheckJoints(const JointStore& joints, std::span<const SavedJoint> saved, Array<std::byte>& settings) {
     for (const SavedJoint& joint : saved) {
         const std::string name = "joint " + std::to_string(joint.id.index);
         if (!joints.Find(joint.id)) return Error{ErrorCode::UnknownId, name + " does not exist any more"};
@@ -148,7 +148,7 @@ Status PhysicsSystem::SaveBodies(std::span<const BodyId> bodies, std::vector<std
     });
     s.EndBlock();
     s.Begin(SnapshotSection::Joints);
-    const std::vector<uint32_t> joints = JointsBetween(world_->joints, bodies);
+    const Array<uint32_t> joints = JointsBetween(world_->joints, bodies);
     VisitList(s, joints, sizeof(SavedJoint), [&](uint32_t index) {
         SavedJoint joint = Describe(world_->joints, index, snapshots_->settings);
         Visit(s, joint);
@@ -169,8 +169,8 @@ Status PhysicsSystem::RestoreBodies(std::span<const std::byte> bytes) {
     const Result<SnapshotParts> parts = CheckSnapshot(bytes, kPartMagic);
     if (!parts) return parts.GetError();
     SnapshotReader s(parts.Value().data);
-    std::vector<SavedBody> saved;
-    std::vector<SavedJoint> joints;
+    Array<SavedBody> saved;
+    Array<SavedJoint> joints;
     VisitList(s, saved, 0, [&](SavedBody& body) { Visit(s, body); });
     VisitList(s, joints, 0, [&](SavedJoint& joint) { Visit(s, joint); });
     if (MaybeError error = CheckBodies(world_->bodies, saved)) return *error;

@@ -116,7 +116,8 @@ void AddWorldBody(WorldState& world) {
     BodyStore& bodies = world.bodies;
     const uint32_t body = bodies.worldBody = bodies.Allocate();
     bodies.cold[body].isWorld = true;
-    SetShapeOf(world, body, EmptyShape::Create());
+    static const ShapePtr kEmpty = EmptyShape::Create();
+    SetShapeOf(world, body, kEmpty);
     bodies.SetRadii(body, *bodies.cold[body].shape);
     bodies.SetCenterPose(body, {world.colliders.boundsOrigin, {}});
     bodies.UpdateInertia(body);
@@ -172,12 +173,12 @@ JointId JointInterface::Add(const JointSettings& settings, std::unique_ptr<Joint
 
 template <class Settings>
 Result<JointId> JointInterface::Create(const Settings& settings) {
+    const WorldChange<&JointInterface::Create<Settings>> change(world_, settings);
+    if (change.Refusal()) return *change.Refusal();
     if (MaybeError error = CheckBodies(world_, settings)) return *error;
     if (MaybeError error = Check(settings)) return *error;
     std::unique_ptr<JointType> type = MakeType(settings);
     if (!type) return Error{ErrorCode::Unsupported, "make: gave no joint type"};
-    const WorldChange<&JointInterface::Create<Settings>> change(world_, settings);
-    if (change.Refusal()) return *change.Refusal();
     return change.template Created<JointId>(Add(settings, std::move(type)));
 }
 

@@ -16,18 +16,16 @@
 
 namespace fulcrum {
 
-Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSettings& settings, JobSystem* jobs) {
+Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSettings& settings, JobSystem* jobs,
+                                                             MemoryResource* memory) {
     if (MaybeError error = Check(settings)) return *error;
-    auto world = std::make_unique<WorldState>();
+    const MemoryScope scope(memory);
+    auto world = std::make_unique<WorldState>(memory);
     world->settings = settings;
-    if (!jobs) {
-        world->ownJobs = std::make_unique<ThreadPool>(1);
-        jobs = world->ownJobs.get();
-    }
-    world->jobs = std::make_unique<WorldJobs>(*jobs, world->lock);
+    world->jobs = std::make_unique<WorldJobs>(jobs, world->lock);
     KeepForEvents(*world);
     auto step = std::make_unique<StepState>();
-    step->findings.resize(jobs->WorkerCount());
+    step->findings.resize(world->jobs->WorkerCount());
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world), std::move(step)));
 }
 
@@ -36,6 +34,7 @@ PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<
       step_(std::move(step)),
       snapshots_(std::make_unique<SnapshotRoom>()),
       bodies_(*world_),
+      lockingBodies_(*world_, true),
       joints_(*world_),
       queries_(*world_) {}
 PhysicsSystem::~PhysicsSystem() = default;
@@ -52,7 +51,7 @@ Status PhysicsSystem::Update(double dt) {
 
 const StepEvents& PhysicsSystem::Events() const {
     static const StepEvents kNone;
-    const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_->lock);
+    const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_->lock, WorldLock::Access::Queries);
     if (refusal) ReportMisuse(*refusal);
     return refusal ? kNone : step_->events.events;
 }
@@ -111,6 +110,11 @@ void PhysicsSystem::SetCallObserver(CallObserver* observer) {
     world_->callObserver = observer;
 }
 
+WorldLock::Exclusive PhysicsSystem::HoldForChanges() {
+    if (const std::optional<Error> refusal = WorldLock::RefusalOfChanging(world_->lock)) ReportMisuse(*refusal);
+    return WorldLock::Exclusive(world_->lock, WorldLock::Access::Edits);
+}
+
 Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
@@ -158,7 +162,8 @@ void PhysicsSystem::VisitContactsOf(BodyId body, FunctionRef<void(const ContactV
 
 void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const {
     const BodyStore& bodies = world_->bodies;
-    std::vector<uint32_t> parents(bodies.Size());
+    const WorldLock::Scope scope(world_->lock, WorldLock::OfThisThread(world_->lock));  // for its memory
+    Array<uint32_t> parents(bodies.Size());
     UnionFind sets(parents);
     world_->pairs.active.Visit([&](uint32_t index) {
         const Pair& pair = world_->pairs.pairs[index];
@@ -168,7 +173,7 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
         if (joint.exists && joint.enabled && !joint.fixed[0] && !joint.fixed[1])
             sets.Unite(joint.body[0], joint.body[1]);
     // Sleeping bodies form the islands in which they fell asleep.
-    std::vector<uint32_t> first(bodies.Size(), ~0u);
+    Array<uint32_t> first(bodies.Size(), ~0u);
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
         const uint32_t island = bodies.cold[i].sleepingIsland;
         if (island == SleepingIslands::kNone) continue;

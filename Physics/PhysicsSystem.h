@@ -1,8 +1,11 @@
-// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once per frame. Only one thread at a
-// time may change it; Queries() may be used by any number of threads at any time.
+// A world of rigid bodies. Create it, add bodies through Bodies(), call Update once per frame. Changes, steps and
+// Queries() may be called by any thread at any time: each is seen by the others before or after, never half. Changes
+// wait for a step to end, queries do not. What else reads the world (getters of Bodies() and Joints(), events, reports,
+// visits) does not lock it: call it while no other thread changes or steps the world, or under Queries().Hold().
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/CallObserver.h>
 #include <Fulcrum/Physics/ContactListener.h>
@@ -24,10 +27,13 @@ struct SnapshotRoom;
 
 class PhysicsSystem {
 public:
-    // `jobs` (not owned, may be null: no threads) must outlive the system. Errors name the field: NonFinite,
-    // NonPositive, Negative, OutOfRange, Unsupported (layerCollides not symmetric).
-    static Result<std::unique_ptr<PhysicsSystem>> Create(const SystemSettings& settings = {},
-                                                         JobSystem* jobs = nullptr);
+    // `jobs` (not owned, may be null: no threads) must outlive the system, and so must `memory` (not owned, may be
+    // null: operator new), from which it takes all of its memory. Shapes are not part of it: they may outlive the
+    // world. Errors name the field: NonFinite, NonPositive, Negative, OutOfRange, Unsupported (layerCollides not
+    // symmetric).
+    static Result<std::unique_ptr<PhysicsSystem>> Create(const SystemSettings& settings = {}, JobSystem* jobs = nullptr,
+                                                         MemoryResource* memory = nullptr);
+    FULCRUM_WORLD_MEMORY
     ~PhysicsSystem();
     PhysicsSystem(const PhysicsSystem&) = delete;
     PhysicsSystem& operator=(const PhysicsSystem&) = delete;
@@ -38,9 +44,15 @@ public:
 
     BodyInterface& Bodies() { return bodies_; }
     const BodyInterface& Bodies() const { return bodies_; }
+    // The same bodies, by getters that lock the world: for threads that run beside a step.
+    BodyInterface& LockingBodies() { return lockingBodies_; }
+    const BodyInterface& LockingBodies() const { return lockingBodies_; }
     JointInterface& Joints() { return joints_; }
     const JointInterface& Joints() const { return joints_; }
     const QueryInterface& Queries() const { return queries_; }
+    // Keeps all other threads from reading, changing and stepping the world as long as the object lives: they see all
+    // changes that this thread makes meanwhile, or none. Each of these is cheaper, too. Waits for a step to end.
+    [[nodiscard]] WorldLock::Exclusive HoldForChanges();
     const StepReport& Report() const;
     // Events of the last step: contacts, bodies, broken joints, as enabled in Settings().events. Valid until the next
     // step. Must not be called from callbacks of a step: that is reported (Misuse.h), and the events are empty.
@@ -112,7 +124,7 @@ private:
     std::unique_ptr<WorldState> world_;
     std::unique_ptr<StepState> step_;
     std::unique_ptr<SnapshotRoom> snapshots_;
-    BodyInterface bodies_;
+    BodyInterface bodies_, lockingBodies_;
     JointInterface joints_;
     QueryInterface queries_;
 };

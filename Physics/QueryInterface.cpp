@@ -66,9 +66,11 @@ Bounds TreeBounds(const WorldState& world, const Position& lower, const Position
 
 }  // namespace
 
-WorldLock::Shared QueryInterface::Hold() const {
-    if (const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_.lock)) ReportMisuse(*refusal);
-    return WorldLock::Shared(world_.lock);
+WorldLock::Shared QueryInterface::Hold(HoldFor purpose) const {
+    const WorldLock::Access access =
+        purpose == HoldFor::Queries ? WorldLock::Access::Queries : WorldLock::Access::Reads;
+    if (const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_.lock, access)) ReportMisuse(*refusal);
+    return WorldLock::Shared(world_.lock, access);
 }
 
 // ---- Rays

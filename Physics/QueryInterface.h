@@ -1,10 +1,11 @@
 // Spatial queries: ray casts, shape casts, overlaps, closest points, bounds. From PhysicsSystem::Queries(). Any number
 // of threads may query at once, also while another thread changes the world through Bodies() and Joints() or steps it:
-// a query then waits, and sees the world before or after, never in between. Queries see the current poses. Hold() locks
-// the world for several queries and while their results are looked up in Bodies(). Callbacks of a query may query, but
-// not change the world: that returns an error. Callbacks of a step or of a change (contact listeners etc.) must not
-// query. Such a query, and one with a null shape, finds nothing and is reported, see Misuse.h. Input that is not finite
-// finds nothing.
+// a query sees the world before or after, never in between. During a step queries see the state of the last one; they
+// wait only while the step writes bounds, at its start, and poses, at its end. A change waits for the queries that run,
+// and the reverse. Hold() locks the world for several queries and while their results are looked up in Bodies().
+// Callbacks of a query may query, but not change the world: that returns an error. Callbacks of a step or of a change
+// (contact listeners etc.) must not query. Such a query, and one with a null shape, finds nothing and is reported, see
+// Misuse.h. Input that is not finite finds nothing.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -19,13 +20,17 @@ namespace fulcrum {
 
 struct WorldState;
 
+// What for the world is held still: for queries and what LockingBodies() reads during a step, or for everything that
+// can be read, for which the end of a step must be awaited.
+enum class HoldFor : uint8_t { Queries, Everything };
+
 class QueryInterface {
 public:
     explicit QueryInterface(WorldState& world) : world_(world) {}
 
     // Locks the world for reading as long as the object lives; queries of this thread are cheaper meanwhile. Changes by
-    // other threads wait, changes by this one return an error.
-    [[nodiscard]] WorldLock::Shared Hold() const;
+    // other threads wait, and so does a step, at the latest at its end; changes by this one return an error.
+    [[nodiscard]] WorldLock::Shared Hold(HoldFor purpose = HoldFor::Everything) const;
 
     // Rays, see RayCast.h. Ties are resolved by the lowest body, child, triangle.
     bool CastRay(const Ray& ray, WorldRayHit& hit, const RayCastSettings& settings = {},

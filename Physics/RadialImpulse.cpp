@@ -41,10 +41,9 @@ Result<uint32_t> BodyInterface::AddRadialImpulse(const RadialImpulse& settings, 
                                CheckRange("impulse", settings.impulse, -1e30, 1e30),
                                CheckEnum("falloff", settings.falloff, RadialImpulse::Falloff::Linear)))
         return *e;
-    {
-        const WorldLock::Exclusive alone(world_.lock);
-        if (alone.Refusal()) return *alone.Refusal();
-    }
+    // Other threads see all of its impulses or none.
+    const WorldLock::Exclusive alone(world_.lock, WorldLock::Access::Edits);
+    if (alone.Refusal()) return *alone.Refusal();
     std::vector<OverlapHit> hits;
     const Position reach = Position::Constant(double{settings.radius});
     QueryInterface(world_).FindInBox(settings.center - reach, settings.center + reach, hits, filter);

@@ -72,7 +72,7 @@ endfunction()
 
 # Eigen solves trees of joints. No public header includes it, so programs do without.
 fulcrum_library(Math)
-fulcrum_library(Jobs PUBLIC Threads::Threads)
+fulcrum_library(Jobs PUBLIC Fulcrum::Math Threads::Threads)
 fulcrum_library(Collision PUBLIC Fulcrum::Math PRIVATE $<$<BOOL:${FULCRUM_LIBCCD}>:ccd>
   PRECOMPILED <algorithm> <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>)
 fulcrum_library(Constraints PUBLIC Fulcrum::Math PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>

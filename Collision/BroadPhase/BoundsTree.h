@@ -16,12 +16,12 @@
 #pragma once
 
 #include <Fulcrum/Math/Bounds.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Wide.h>
 
 #include <bit>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace fulcrum {
 
@@ -84,7 +84,7 @@ public:
     void CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit) const;
     // The same for the leaves within `maxDistance` m of a box, nearer nodes first.
     template <class Visitor>
-    void VisitNear(const Bounds& box, float& maxDistance, Visitor&& visit) const;
+    void VisitNear(const Bounds& box, const float& maxDistance, Visitor&& visit) const;
 
     // A box around all leaves, tight after Optimize or Rebuild. Empty without leaves.
     Bounds TotalBounds() const;
@@ -166,9 +166,9 @@ private:
     template <class Test, class Limit, class Visitor>
     void VisitInOrder(Test&& test, Limit&& limit, Visitor&& visit) const;
 
-    std::vector<Node> nodes_;                        // the first nodeCount_ are in use or on the free list
-    std::vector<uint32_t> places_;                   // id -> node * kWidth + slot
-    std::vector<Packed> gathered_;                   // Rebuild's leaves; lane 3 holds the id's bits
+    Array<Node> nodes_;                              // the first nodeCount_ are in use or on the free list
+    Array<uint32_t> places_;                         // id -> node * kWidth + slot
+    Array<Packed> gathered_;                         // Rebuild's leaves; lane 3 holds the id's bits
     uint32_t pendingSpine_[kMaxPendingHeight] = {};  // the pending tree's node being filled, by height
     uint32_t pendingHeight_ = 0;                     // nodes on the spine
     uint32_t nodeCount_ = 0;

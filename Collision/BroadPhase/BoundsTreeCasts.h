@@ -130,7 +130,7 @@ void BoundsTree::CastRay(const TreeRay& ray, float& maxFraction, Visitor&& visit
 }
 
 template <class Visitor>
-void BoundsTree::VisitNear(const Bounds& box, float& maxDistance, Visitor&& visit) const {
+void BoundsTree::VisitNear(const Bounds& box, const float& maxDistance, Visitor&& visit) const {
     const float limit[6] = {box.upper.x(),  box.upper.y(),  box.upper.z(),
                             -box.lower.x(), -box.lower.y(), -box.lower.z()};
     const auto square = [&] { return maxDistance < 0 ? -1.0f : maxDistance * maxDistance; };

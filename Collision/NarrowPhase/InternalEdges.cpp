@@ -110,11 +110,11 @@ bool InternalEdgeFilter::DeferToNeighbor(const TriangleView& view, const Triangl
     return true;
 }
 
-std::vector<SurfaceManifold>& InternalEdgeFilter::Resolve() {
+Array<SurfaceManifold>& InternalEdgeFilter::Resolve() {
     if (deferred_.empty()) return contacts_;
     // In one array: the sorted vertices of face contacts; the sorted vertices of deferred contacts, each once; for each
     // of these whether it is covered. Sorted, since a large shape may touch any number of them.
-    std::vector<uint32_t>& covered = covered_;
+    Array<uint32_t>& covered = covered_;
     std::sort(covered.begin(), covered.end());
     const ptrdiff_t faces = static_cast<ptrdiff_t>(covered.size());
     for (const DeferredContact& deferred : deferred_)

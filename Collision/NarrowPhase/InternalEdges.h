@@ -31,7 +31,7 @@ public:
     // false, adding nothing, if it is ambiguous beyond which one.
     bool DeferToNeighbor(const TriangleView& view, const TriangleInShape& triangle, float slop, const Manifold& onFace);
     // Decides on the deferred contacts. Returns all accepted contacts.
-    std::vector<SurfaceManifold>& Resolve();
+    Array<SurfaceManifold>& Resolve();
     size_t MemoryUsed() const;  // bytes, besides the object itself
 
 private:
@@ -45,9 +45,9 @@ private:
 
     void Defer(const TriangleView& view, const Vector3& axis, const Manifold& manifold, const Manifold& onFace);
 
-    std::vector<DeferredContact> deferred_;
-    std::vector<uint32_t> covered_;  // ids of the vertices of triangles with face contacts
-    std::vector<SurfaceManifold> contacts_;
+    Array<DeferredContact> deferred_;
+    Array<uint32_t> covered_;  // ids of the vertices of triangles with face contacts
+    Array<SurfaceManifold> contacts_;
 };
 
 }  // namespace fulcrum

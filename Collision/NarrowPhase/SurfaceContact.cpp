@@ -64,7 +64,7 @@ public:
         Collect();
         const SurfaceProbe probe{a_,      isPolyhedral_ ? &core_ : nullptr, axes_,
                                  center_, settings_.speculativeDistance,    b_.IsTwoSided()};
-        std::vector<TriangleView>& views = contacts_.views_;
+        Array<TriangleView>& views = contacts_.views_;
         for (size_t first = 0; first < views.size(); first += 8)
             CollideBatch(probe, first, std::min<size_t>(views.size() - first, 8));
         MergeContacts(contacts_.filter_.Resolve(), a_.InnerRadius(), Vector3(axes_ * motion_), contacts_.manifolds_,
@@ -75,7 +75,7 @@ public:
 
 private:
     void Collect() {
-        std::vector<uint32_t>& ids = contacts_.ids_;
+        Array<uint32_t>& ids = contacts_.ids_;
         ids.clear();
         b_.VisitTriangles(BoundsInSurface(a_, bInA_, settings_.speculativeDistance),
                           [&](uint32_t id) { ids.push_back(id); });
@@ -132,7 +132,7 @@ private:
     // Whether it shares a corner with a triangle that the shape touched and faces the same way: excludes triangles
     // behind an edge and the other side of a thin wall.
     bool ContinuesTouched(const TriangleView& view) {
-        std::vector<TriangleView>& touched = contacts_.touched_;
+        Array<TriangleView>& touched = contacts_.touched_;
         touched.resize(touched_.size());
         b_.GetTriangles(touched_, touched.data());
         return std::any_of(touched.begin(), touched.end(), [&](const TriangleView& before) {

@@ -27,11 +27,11 @@ public:
 private:
     friend class SurfaceCollider;
 
-    std::vector<uint32_t> ids_;
-    std::vector<TriangleView> views_;
-    std::vector<TriangleView> touched_;  // in the last step
+    Array<uint32_t> ids_;
+    Array<TriangleView> views_;
+    Array<TriangleView> touched_;  // in the last step
     InternalEdgeFilter filter_;
-    std::vector<SurfaceManifold> manifolds_;
+    Array<SurfaceManifold> manifolds_;
     size_t manifoldCount_ = 0;
     CollideCounters counters_;
 };

@@ -76,8 +76,7 @@ private:
 };
 
 // Contact `first`, merged with all later ones in its direction, which are left without points.
-SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t first, float innerRadius,
-                             const Vector3& motion) {
+SurfaceManifold MergeSimilar(Array<SurfaceManifold>& contacts, size_t first, float innerRadius, const Vector3& motion) {
     SurfaceManifold merged = contacts[first];
     contacts[first].manifold.pointCount = 0;
     const auto isSame = [&](const SurfaceManifold& other) {
@@ -98,13 +97,13 @@ SurfaceManifold MergeSimilar(std::vector<SurfaceManifold>& contacts, size_t firs
 
 }  // namespace
 
-SurfaceManifold& AppendManifold(std::vector<SurfaceManifold>& manifolds, size_t& count) {
+SurfaceManifold& AppendManifold(Array<SurfaceManifold>& manifolds, size_t& count) {
     if (manifolds.size() == count) manifolds.emplace_back();
     return manifolds[count++];
 }
 
-void MergeContacts(std::vector<SurfaceManifold>& contacts, float innerRadius, const Vector3& motion,
-                   std::vector<SurfaceManifold>& manifolds, size_t& count) {
+void MergeContacts(Array<SurfaceManifold>& contacts, float innerRadius, const Vector3& motion,
+                   Array<SurfaceManifold>& manifolds, size_t& count) {
     if (contacts.size() > 1)
         std::sort(contacts.begin(), contacts.end(), [](const SurfaceManifold& x, const SurfaceManifold& y) {
             const float dx = DeepestSeparation(x.manifold), dy = DeepestSeparation(y.manifold);

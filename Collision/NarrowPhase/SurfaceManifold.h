@@ -3,8 +3,7 @@
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
-
-#include <vector>
+#include <Fulcrum/Math/Memory.h>
 
 namespace fulcrum {
 
@@ -25,12 +24,12 @@ inline float DeepestSeparation(const Manifold& manifold) {
 }
 
 // Appends a slot, reusing one that exists.
-SurfaceManifold& AppendManifold(std::vector<SurfaceManifold>& manifolds, size_t& count);
+SurfaceManifold& AppendManifold(Array<SurfaceManifold>& manifolds, size_t& count);
 
 // Writes manifolds[0 .. count): contacts in nearly the same direction and on the same material become one manifold,
 // with the normal of the deepest and at most four of their points. Changes `contacts`. innerRadius: m, of the shape.
 // motion: m, of the shape relative to the surface within the step.
-void MergeContacts(std::vector<SurfaceManifold>& contacts, float innerRadius, const Vector3& motion,
-                   std::vector<SurfaceManifold>& manifolds, size_t& count);
+void MergeContacts(Array<SurfaceManifold>& contacts, float innerRadius, const Vector3& motion,
+                   Array<SurfaceManifold>& manifolds, size_t& count);
 
 }  // namespace fulcrum

@@ -1,18 +1,40 @@
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
 
+#include <Fulcrum/Collision/NarrowPhase/AxisSearch.h>
 #include <Fulcrum/Collision/NarrowPhase/Epa.h>
 #include <Fulcrum/Collision/NarrowPhase/Libccd.h>
+#include <Fulcrum/Collision/Queries/CoreShapes.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace fulcrum {
 
 namespace {
 
+std::optional<Polyhedron> PolyhedralCoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
+    if (HasPolyhedralCore(shape.Type())) return CoreOf(shape, storage);
+    if (const auto* triangle = dynamic_cast<const TriangleCore*>(&shape))
+        return CoreOf(triangle->Corners(), triangle->Normal(), 0, storage);
+    return std::nullopt;
+}
+
+// Of two polyhedra, one of them with faces, the axis of least depth by the separating axis test.
+std::optional<Vector3> PolyhedralAxis(const SupportPair& pair, const RelativePose& bInA) {
+    PolyhedronStorage storageA, storageB;
+    const std::optional<Polyhedron> a = PolyhedralCoreOf(pair.a, storageA);
+    if (!a) return std::nullopt;
+    const std::optional<Polyhedron> b = PolyhedralCoreOf(pair.b, storageB);
+    if (!b || a->faceCount + b->faceCount == 0) return std::nullopt;
+    return SearchAllAxes(PolyhedronPair(*a, *b, bInA)).axis;
+}
+
 // The axis of least depth of overlapping cores. For a flat or pointed core, such as a triangle or a segment, EPA may
-// fail: then libccd's axis or the center line is used, whichever has less depth.
-Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk) {
+// fail. Then polyhedra are tested along all their axes: of two triangles libccd's EPA takes milliseconds, and there may
+// be thousands of pairs. For others libccd's axis or the center line is used, whichever has less depth; without libccd
+// if the depth is known to be less than `enough`, m.
+Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, const ConvexGjkResult& gjk, float enough) {
     Vector3 axis = gjk.axis;
     float depth = -pair.SeparationAlong(axis);
     // If the cores are far apart, GJK's simplex may contain the origin due to rounding. A separating plane proves that
@@ -46,6 +68,11 @@ Vector3 AxisOfLeastDepth(const SupportPair& pair, const RelativePose& bInA, cons
         consider(face);
         consider(-face);
     }
+    if (const std::optional<Vector3> found = PolyhedralAxis(pair, bInA)) {
+        consider(*found);
+        return axis;
+    }
+    if (depth < enough) return axis;
     for (const LibccdAlgorithm algorithm : {LibccdAlgorithm::Epa, LibccdAlgorithm::Mpr}) {
         const LibccdResult found = LibccdPenetration(pair.a, pair.b, bInA, 0, algorithm);
         if (found.status == LibccdResult::Status::Found) consider(Normalized(found.normal.cast<float>()));
@@ -107,7 +134,8 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
                                NarrowPhaseMethod method) {
     const SupportPair pair(a, b, bInA);
     if (method == NarrowPhaseMethod::Libccd) return MeasureByLibccd(pair, bInA, reach);
-    ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), reach + pair.RadiusSum());
+    const float reachOfCores = reach + pair.RadiusSum();
+    ConvexGjkResult gjk = ConvexGjk(pair, Normalized(pair.position), std::max(reachOfCores, 0.0f));
     ConvexSeparation result;
     if (gjk.status == GjkStatus::BeyondReach) {
         result.isBeyond = true;
@@ -122,7 +150,7 @@ ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const
         result.isBeyond = !(result.separation <= reach) || !IsFinite(result.onA) || !IsFinite(result.onB);
         return result;
     }
-    result.normal = AxisOfLeastDepth(pair, bInA, gjk);
+    result.normal = AxisOfLeastDepth(pair, bInA, gjk, -reachOfCores);
     result.separation = pair.SeparationAlong(result.normal) - pair.RadiusSum();
     FindDeepestPoints(pair, result);
     return result;

@@ -15,7 +15,8 @@ struct ConvexSeparation {
     Vector3 onB = Vector3::Zero();
 };
 
-// Exact to about 1e-6 of the shapes' size if apart, 3e-5 if overlapping. `reach`: m, >= 0.
+// Exact to about 1e-6 of the shapes' size if apart, 3e-5 if overlapping. `reach`: m; if negative, overlaps of less than
+// that may be measured as deeper than they are, but not as deep.
 ConvexSeparation MeasureConvex(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, float reach,
                                NarrowPhaseMethod method = NarrowPhaseMethod::Automatic);
 

@@ -31,6 +31,7 @@ public:
         const float a = Dot(d, vertices_[0]), b = Dot(d, vertices_[1]), c = Dot(d, vertices_[2]);
         return a >= b ? (a >= c ? vertices_[0] : vertices_[2]) : (b >= c ? vertices_[1] : vertices_[2]);
     }
+    const Vector3 (&Corners() const)[3] { return vertices_; }
     const Vector3& Normal() const { return normal_; }
     uint32_t Id() const { return id_; }
 

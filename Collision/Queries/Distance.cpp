@@ -19,27 +19,40 @@ Bounds Everywhere() {
     return bounds;
 }
 
-// Calls visit(pieceOfA, pieceOfB, pose of the latter in the former) for the pairs of pieces whose boxes are within
-// `reach`.
+// How far two boxes are apart along the axis that separates them most, m; negative: by how much they overlap along
+// that.
+float SeparationOf(const Bounds& a, const Bounds& b) {
+    return Vector3(a.lower - b.upper).cwiseMax(Vector3(b.lower - a.upper)).maxCoeff();
+}
+
+// Calls visit(pieceOfA, pieceOfB, pose of the latter in the former, separation of their boxes) for the pairs of pieces
+// whose boxes are within `reach` m of each other: pieces of A that are near B first, and of B those near to each. The
+// visitor may lower `reach`, so that most pairs are never visited; below 0 ends the search.
 template <class Visitor>
-void VisitPairs(const Shape& a, const Shape& b, const RelativePose& bInA, float reach, Visitor&& visit) {
+void VisitPairs(const Shape& a, const Shape& b, const RelativePose& bInA, const float& reach, Visitor&& visit) {
     const RelativePose aInB = Inverse(bInA);
-    VisitPieces(a, Inflated(BoundsAt(bInA, b.LocalBounds()), reach), [&](const Piece& pieceOfA) {
+    VisitPiecesNear(a, BoundsAt(bInA, b.LocalBounds()), reach, [&](const Piece& pieceOfA) {
         const Bounds near = BoundsAt(aInB * pieceOfA.pose, pieceOfA.shape.LocalBounds());
         const RelativePose bInPiece = Inverse(pieceOfA.pose) * bInA;
-        VisitPieces(b, Inflated(near, reach),
-                    [&](const Piece& pieceOfB) { visit(pieceOfA, pieceOfB, bInPiece * pieceOfB.pose); });
+        VisitPiecesNear(b, near, reach, [&](const Piece& pieceOfB) {
+            const float separation = SeparationOf(near, BoundsAt(pieceOfB.pose, pieceOfB.shape.LocalBounds()));
+            visit(pieceOfA, pieceOfB, bInPiece * pieceOfB.pose, separation);
+        });
     });
 }
 
 class ClosestSearch {
 public:
-    ClosestSearch(float maxDistance, ClosestPoints& result, NarrowPhaseMethod method = NarrowPhaseMethod::Automatic)
-        : limit_(maxDistance), result_(result), method_(method) {}
+    // `rounding`: m, of the boxes of pieces.
+    ClosestSearch(float maxDistance, float rounding, ClosestPoints& result,
+                  NarrowPhaseMethod method = NarrowPhaseMethod::Automatic)
+        : limit_(maxDistance), rounding_(rounding), reach_(maxDistance + rounding), result_(result), method_(method) {}
 
-    void Consider(const Piece& a, const Piece& b, const RelativePose& bInA) {
-        const float size = std::max(a.shape.OuterRadius(), b.shape.OuterRadius());
-        const float reach = std::max(limit_, 0.0f) + RoundingOfDistances(size);
+    // `ofBoxes`: the separation of their boxes. Pieces cannot overlap more deeply than these do.
+    void Consider(const Piece& a, const Piece& b, const RelativePose& bInA, float ofBoxes) {
+        const float rounding = RoundingOfDistances(std::max(a.shape.OuterRadius(), b.shape.OuterRadius()));
+        const float reach = limit_ + rounding;
+        if (ofBoxes > reach) return;
         const ConvexSeparation found = MeasureConvex(a.shape, b.shape, bInA, reach, method_);
         if (found.isBeyond) return;
         Consider(found.separation, Rotate(a.pose.rotation, found.normal), a.pose.Transform(found.onA),
@@ -53,13 +66,17 @@ public:
             return;
         found_ = true;
         limit_ = distance;
+        reach_ = std::max(limit_, 0.0f) + rounding_;
         result_ = {distance, normal, onA, onB, ofA, ofB};
     }
     bool Found() const { return found_; }
-    float Best() const { return limit_; }
+    // m: how far apart the boxes of pieces may be that are still of interest.
+    const float& Reach() const { return reach_; }
 
 private:
     float limit_;  // m: largest distance of interest
+    const float rounding_;
+    float reach_;
     bool found_ = false;
     ClosestPoints& result_;
     NarrowPhaseMethod method_;
@@ -68,7 +85,7 @@ private:
 // All pieces of a shape against a half space, both in the plane's frame.
 bool ClosestToPlane(const Plane& plane, const Shape& other, const RelativePose& otherInPlane, float maxDistance,
                     ClosestPoints& result) {
-    ClosestSearch search(maxDistance, result);
+    ClosestSearch search(maxDistance, 0, result);
     const Vector3 n = plane.Normal();
     if (other.Type() == ShapeType::Plane) {
         const Plane& second = static_cast<const Plane&>(other);
@@ -114,27 +131,12 @@ bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA,
         result = Swapped(result, bInA);
         return true;
     }
-    ClosestSearch search(maxDistance, result, method);
-    const auto consider = [&](const Piece& pieceOfA, const Piece& pieceOfB, const RelativePose& pose) {
-        search.Consider(pieceOfA, pieceOfB, pose);
+    ClosestSearch search(maxDistance, RoundingOfDistances(std::max(a.OuterRadius(), b.OuterRadius())), result, method);
+    const auto consider = [&](const Piece& pieceOfA, const Piece& pieceOfB, const RelativePose& pose, float ofBoxes) {
+        search.Consider(pieceOfA, pieceOfB, pose, ofBoxes);
     };
-    if (a.IsConvex() && b.IsConvex()) {
-        VisitPairs(a, b, bInA, 0, consider);
-        return search.Found();
-    }
-    // Searches growing boxes, until one contains everything closer than the best result.
-    const Bounds boxOfB = BoundsAt(bInA, b.LocalBounds()), &boxOfA = a.LocalBounds();
-    const Vector3 gap = Vector3(boxOfB.lower - boxOfA.upper).cwiseMax(boxOfA.lower - boxOfB.upper).cwiseMax(0.0f);
-    const Vector3 span = boxOfA.upper.cwiseMax(boxOfB.upper) - boxOfA.lower.cwiseMin(boxOfB.lower);
-    const float most = std::min(maxDistance, Length(span));
-    if (gap.maxCoeff() > maxDistance) return false;
-    float reach = std::min(most, gap.maxCoeff() * 1.1f + 0.25f * std::min(a.OuterRadius(), b.OuterRadius()) + 1e-6f);
-    for (;;) {
-        VisitPairs(a, b, bInA, reach, consider);
-        if (search.Found() && search.Best() <= reach) return true;
-        if (reach >= most) return search.Found();
-        reach = std::min(most, search.Found() ? search.Best() * 1.001f : 4 * reach);
-    }
+    VisitPairs(a, b, bInA, search.Reach(), consider);
+    return search.Found();
 }
 
 bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result,
@@ -146,11 +148,12 @@ bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA, NarrowPha
     if (!IsUsable(bInA, 0)) return false;
     ClosestPoints unused;
     if (a.Type() == ShapeType::Plane || b.Type() == ShapeType::Plane) return FindClosestPoints(a, b, bInA, 0, unused);
-    bool overlap = false;
-    VisitPairs(a, b, bInA, 0, [&](const Piece& pieceOfA, const Piece& pieceOfB, const RelativePose& pose) {
-        overlap = overlap || OverlapConvex(pieceOfA.shape, pieceOfB.shape, pose, method);
+    constexpr float kTouching = 0, kEnded = -1;
+    float reach = kTouching;
+    VisitPairs(a, b, bInA, reach, [&](const Piece& pieceOfA, const Piece& pieceOfB, const RelativePose& pose, float) {
+        if (reach >= 0 && OverlapConvex(pieceOfA.shape, pieceOfB.shape, pose, method)) reach = kEnded;
     });
-    return overlap;
+    return reach == kEnded;
 }
 
 bool Contains(const Shape& shape, const Vector3& point, NarrowPhaseMethod method) {

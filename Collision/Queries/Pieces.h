@@ -2,6 +2,7 @@
 // overlaps; half spaces, which have no pieces, are handled by the callers. Allocates nothing; thread-safe.
 #pragma once
 
+#include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
 #include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/SubShape.h>
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>
@@ -60,6 +61,20 @@ inline Bounds BoundsAbout(const Position& origin, const Shape& shape, const Pose
     return RoundedOutwards(at + turned.lower.cast<double>(), at + turned.upper.cast<double>());
 }
 
+template <class Visitor>
+void VisitChild(const CompoundShape& compound, uint32_t child, Visitor&& visit) {
+    const CompoundShape::Child& entry = compound.ChildAt(child);
+    visit(Piece{*entry.shape, compound.PoseOf(entry), {child, kNoTriangle}});
+}
+
+template <class Visitor>
+void VisitTriangle(const SurfaceShape& surface, uint32_t id, Visitor&& visit) {
+    const TriangleView view = surface.GetTriangle(id);
+    const Vector3 origin = view.vertices[0];
+    const TriangleCore triangle(view, origin);
+    visit(Piece{triangle, {origin, {}}, {0, id}, &triangle, surface.IsTwoSided()});
+}
+
 // Calls visit(const Piece&) for the pieces whose boxes overlap `box`, which is in the shape's frame; a convex shape is
 // its own piece and always visited. Not for half spaces.
 template <class Visitor>
@@ -68,18 +83,27 @@ void VisitPieces(const Shape& shape, const Bounds& box, Visitor&& visit) {
         visit(Piece{static_cast<const ConvexShape&>(shape), {}, {}});
     } else if (shape.IsCompound()) {
         const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
-        compound.Tree().Query(Shifted(box, -compound.Origin()), [&](uint32_t child) {
-            const CompoundShape::Child& entry = compound.ChildAt(child);
-            visit(Piece{*entry.shape, compound.PoseOf(entry), {child, kNoTriangle}});
-        });
+        compound.Tree().Query(Shifted(box, -compound.Origin()),
+                              [&](uint32_t child) { VisitChild(compound, child, visit); });
     } else if (shape.IsSurface()) {
         const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
-        surface.VisitTriangles(box, [&](uint32_t id) {
-            const TriangleView view = surface.GetTriangle(id);
-            const Vector3 origin = view.vertices[0];
-            const TriangleCore triangle(view, origin);
-            visit(Piece{triangle, {origin, {}}, {0, id}, &triangle, surface.IsTwoSided()});
-        });
+        surface.VisitTriangles(box, [&](uint32_t id) { VisitTriangle(surface, id, visit); });
+    }
+}
+
+// The same for the pieces whose boxes are within maxDistance m of `box`, nearer ones mostly first. The visitor may
+// lower maxDistance; below 0 ends the search.
+template <class Visitor>
+void VisitPiecesNear(const Shape& shape, const Bounds& box, const float& maxDistance, Visitor&& visit) {
+    if (shape.IsConvex()) {
+        visit(Piece{static_cast<const ConvexShape&>(shape), {}, {}});
+    } else if (shape.IsCompound()) {
+        const CompoundShape& compound = static_cast<const CompoundShape&>(shape);
+        compound.Tree().VisitNear(Shifted(box, -compound.Origin()), maxDistance,
+                                  [&](uint32_t child) { VisitChild(compound, child, visit); });
+    } else if (shape.IsSurface()) {
+        const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
+        surface.VisitTrianglesNear(box, maxDistance, [&](uint32_t id) { VisitTriangle(surface, id, visit); });
     }
 }
 

@@ -50,8 +50,14 @@ protected:
     // The child's box in the children's frame.
     static Bounds BoundsOf(const Child& child);
 
+    // A shape may outlive the world that its thread is working on.
+    static BoundsTree TreeOutsideOfWorlds() {
+        const MemoryScope scope(nullptr);
+        return {};
+    }
+
     std::vector<Child> children_;
-    BoundsTree tree_;
+    BoundsTree tree_ = TreeOutsideOfWorlds();
 };
 
 }  // namespace fulcrum

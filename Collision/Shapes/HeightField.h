@@ -77,6 +77,7 @@ private:
     friend struct ShapeFileAccess;
     HeightField();
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
+    void SearchNear(const Bounds& box, const float& maxDistance, void* context, BatchFunction found) const override;
     void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override;
 
     // The lowest and highest samples of a square of cells (min/max pyramid). Those of level 0 are kBlock cells wide,

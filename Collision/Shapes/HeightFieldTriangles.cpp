@@ -1,4 +1,5 @@
 // The triangles of a height field: their corners, which of their edges are active, which overlap a box.
+#include <Fulcrum/Collision/Shapes/BoxDistance.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
 
@@ -187,6 +188,75 @@ void HeightField::SearchBox(const Bounds& box, void* context, BatchFunction foun
         for (uint32_t bx = x.first / size; bx <= x.last / size; ++bx)
             DescendInto(level, bx, bz, x, z, low, high, searchCells);
     if (count > 0) found(context, ids, count);
+}
+
+// Down the min/max pyramid, the nearest blocks first.
+void HeightField::SearchNear(const Bounds& box, const float& maxDistance, void* context, BatchFunction found) const {
+    if (!box.lower.isAtMost(box.upper)) return;
+    const auto square = [&](CellRange x, CellRange z, float low, float high) {
+        Bounds cells;
+        cells.lower = Vector3(X(x.first), origin_.y() + low, Z(z.first));
+        cells.upper = Vector3(X(x.last + 1), origin_.y() + high, Z(z.last + 1));
+        return SquaredDistance(cells, box);
+    };
+    const auto searchCells = [&](CellRange x, CellRange z) {
+        for (uint32_t cz = z.first; cz <= z.last; ++cz) {
+            uint32_t ids[kMaxBatch];
+            int count = 0;
+            const float maxSquare = SquareOfReach(maxDistance);
+            for (uint32_t cx = x.first; cx <= x.last; ++cx) {
+                const uint32_t cell = cz * CellCountX() + cx, sample = cz * sampleCountX_ + cx;
+                if (CellOf(cell) == kHoleCell) continue;
+                const float a = HeightOf(sample), b = HeightOf(sample + 1), c = HeightOf(sample + sampleCountX_),
+                            d = HeightOf(sample + sampleCountX_ + 1);
+                // Both have the cell's own bounds along x and z.
+                const float edgeLow = std::min(b, c), edgeHigh = std::max(b, c);
+                const float corners[2] = {a, d};
+                for (uint32_t half = 0; half < 2; ++half) {
+                    const float low = std::min(corners[half], edgeLow), high = std::max(corners[half], edgeHigh);
+                    ids[count] = 2 * cell + half;
+                    count += square({cx, cx}, {cz, cz}, low, high) <= maxSquare ? 1 : 0;
+                }
+            }
+            if (count > 0) found(context, ids, count);
+        }
+    };
+    struct Entry {
+        float square;
+        uint32_t level, x, z;
+    };
+    constexpr int kMostLevels = 31;
+    Entry stack[3 * kMostLevels + 4];
+    int top = 0;
+    stack[top++] = {0, static_cast<uint32_t>(levels_.size()) - 1, 0, 0};
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        const float maxSquare = SquareOfReach(maxDistance);
+        if (!(entry.square <= maxSquare)) continue;
+        const auto cellsOf = [](uint32_t level, uint32_t block, uint32_t count) {
+            const uint32_t size = kBlock << level;
+            return CellRange{block * size, std::min(block * size + (size - 1), count - 1)};
+        };
+        if (entry.level == 0) {
+            searchCells(cellsOf(0, entry.x, CellCountX()), cellsOf(0, entry.z, CellCountZ()));
+            continue;
+        }
+        const uint32_t level = entry.level - 1;
+        const Level& below = levels_[level];
+        const int base = top;
+        for (uint32_t z = 2 * entry.z; z < std::min(2 * entry.z + 2, below.countZ); ++z) {
+            for (uint32_t x = 2 * entry.x; x < std::min(2 * entry.x + 2, below.countX); ++x) {
+                const Range& range = RangeOf(level, x, z);
+                const Entry child{
+                    square(cellsOf(level, x, CellCountX()), cellsOf(level, z, CellCountZ()), range.low, range.high),
+                    level, x, z};
+                if (!(child.square <= maxSquare)) continue;
+                int at = top++;
+                for (; at > base && stack[at - 1].square < child.square; --at) stack[at] = stack[at - 1];
+                stack[at] = child;
+            }
+        }
+    }
 }
 
 }  // namespace fulcrum

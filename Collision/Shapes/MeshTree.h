@@ -7,7 +7,7 @@
 // each other, and an index takes two bytes; otherwise four.
 #pragma once
 
-#include <Fulcrum/Math/Bounds.h>
+#include <Fulcrum/Collision/Shapes/BoxDistance.h>
 #include <Fulcrum/Math/Wide.h>
 
 #include <bit>
@@ -120,6 +120,12 @@ struct MeshTree {
     template <class Leaf>
     void SearchBox(const Bounds& box, Leaf&& leaf) const;
 
+    // Calls leaf(begin, end) for every leaf whose box is within maxDistance m of `box`, which is finite, the nearest
+    // mostly first, and perhaps for some a little farther away. `leaf` may lower maxDistance. An axis of the tree
+    // counts `scale` times.
+    template <class Leaf>
+    void SearchNear(const Bounds& box, const Vector3& scale, const float& maxDistance, Leaf&& leaf) const;
+
     // Calls leaf(node, child) for the leaves that a ray hits, roughly in order of distance; it returns the largest
     // fraction that is still wanted, negative to stop.
     template <class Leaf>
@@ -168,6 +174,65 @@ void MeshTree::SearchBox(const Bounds& box, Leaf&& leaf) const {
         }
         for (uint32_t bits = hits & inner; bits != 0; bits &= bits - 1)
             stack[top++] = node.firstChild + static_cast<uint32_t>(std::countr_zero(bits));
+    }
+}
+
+// The children of a node within a distance of a box, and the squares of their distances, m2.
+struct NearChildren {
+    uint32_t bits;
+    alignas(32) float square[MeshNode::kWidth];
+};
+
+inline void MeasureChildren(const MeshNode& node, const Bounds& box, const Vector3& scale, float maxSquare,
+                            NearChildren& near) {
+    using mesh_lanes::Lanes, mesh_lanes::kStep;
+    near.bits = 0;
+    for (int i = 0; i < MeshNode::kWidth; i += kStep) {
+        Lanes sum(0.0f);
+        for (int axis = 0; axis < 3; ++axis) {
+            const float lower = box.lower[axis], upper = box.upper[axis], origin = node.origin[axis],
+                        pad = 0x1p-22f * (Abs(lower) + Abs(upper) + Abs(origin));  // covers the rounding
+            const Lanes step(node.Step(axis));
+            const Lanes above = Lanes::FromBytes(node.lower[axis] + i) * step + Lanes(origin - upper - pad),
+                        below = Lanes(lower - origin - pad) - Lanes::FromBytes(node.upper[axis] + i) * step;
+            const Lanes gap = Max(Max(above, below), Lanes(0.0f)) * Lanes(scale[axis]);
+            sum += gap * gap;
+        }
+        near.bits |= (sum <= Lanes(maxSquare)).ToBits() << i;
+        sum.Store(near.square + i);
+    }
+    near.bits &= (1u << node.ChildCount()) - 1u;
+}
+
+template <class Leaf>
+void MeshTree::SearchNear(const Bounds& box, const Vector3& scale, const float& maxDistance, Leaf&& leaf) const {
+    // A node; or a leaf: which child of it.
+    struct Entry {
+        float square;
+        uint32_t node;
+        int leaf;
+    };
+    Entry stack[kMaxStack];
+    int top = 0;
+    stack[top++] = {0, 0, -1};
+    while (top > 0) {
+        const Entry entry = stack[--top];
+        const float maxSquare = SquareOfReach(maxDistance);
+        if (!(entry.square <= maxSquare)) continue;
+        const MeshNode& node = nodes[entry.node];
+        if (entry.leaf >= 0) {
+            leaf(node.LeafBegin(entry.leaf), node.LeafEnd(entry.leaf));
+            continue;
+        }
+        NearChildren near;
+        MeasureChildren(node, box, scale, maxSquare, near);
+        for (const int base = top; near.bits != 0; near.bits &= near.bits - 1) {
+            const int i = std::countr_zero(near.bits);
+            int at = top++;  // the nearest on top
+            for (; at > base && stack[at - 1].square < near.square[i]; --at) stack[at] = stack[at - 1];
+            stack[at] = i < node.NodeCount() ? Entry{near.square[i], node.firstChild + static_cast<uint32_t>(i), -1}
+                                             : Entry{near.square[i], entry.node, i};
+        }
     }
 }
 

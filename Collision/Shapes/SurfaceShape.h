@@ -62,6 +62,10 @@ public:
     // itself may be outside `box`. Bounds may be infinite; empty or NaN ones find nothing.
     template <class Visitor>
     void VisitTriangles(const Bounds& box, Visitor&& visit) const;
+    // The same for the triangles whose bounding boxes are within `maxDistance` m of `box`, those in nearer parts of the
+    // surface mostly first. The visitor may lower maxDistance as it finds what it looks for; below 0 ends the search.
+    template <class Visitor>
+    void VisitTrianglesNear(const Bounds& box, const float& maxDistance, Visitor&& visit) const;
     // Writes the ids to `ids`. Returns their number, which may be larger than ids.size(): then only the first ones are
     // written.
     uint32_t FindTriangles(const Bounds& box, std::span<uint32_t> ids) const;
@@ -95,8 +99,12 @@ protected:
     static constexpr int kMaxBatch = 16;
     using BatchFunction = void (*)(void* context, const uint32_t* ids, int count);
     using HitFunction = bool (*)(void* context, const SurfaceHit& hit);
+    template <class Visitor>
+    static void VisitEach(void* context, const uint32_t* ids, int count);
     virtual void SearchBox(const Bounds& box, void* context, BatchFunction found) const = 0;
     virtual void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const = 0;
+    // Reads maxDistance anew after each call of `found`.
+    virtual void SearchNear(const Bounds& box, const float& maxDistance, void* context, BatchFunction found) const = 0;
 
     // Keeps the closest of the hits of a traversal.
     struct ClosestHit {
@@ -121,12 +129,20 @@ protected:
 };
 
 template <class Visitor>
+void SurfaceShape::VisitEach(void* context, const uint32_t* ids, int count) {
+    auto& visit = *static_cast<Visitor*>(context);
+    for (int i = 0; i < count; ++i) visit(ids[i]);
+}
+
+template <class Visitor>
 void SurfaceShape::VisitTriangles(const Bounds& box, Visitor&& visit) const {
-    SearchBox(box, const_cast<void*>(static_cast<const void*>(&visit)),
-              [](void* context, const uint32_t* ids, int count) {
-                  auto& call = *static_cast<std::remove_reference_t<Visitor>*>(context);
-                  for (int i = 0; i < count; ++i) call(ids[i]);
-              });
+    SearchBox(box, const_cast<void*>(static_cast<const void*>(&visit)), VisitEach<std::remove_reference_t<Visitor>>);
+}
+
+template <class Visitor>
+void SurfaceShape::VisitTrianglesNear(const Bounds& box, const float& maxDistance, Visitor&& visit) const {
+    SearchNear(box, maxDistance, const_cast<void*>(static_cast<const void*>(&visit)),
+               VisitEach<std::remove_reference_t<Visitor>>);
 }
 
 template <class Visitor>

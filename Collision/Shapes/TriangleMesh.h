@@ -59,6 +59,7 @@ private:
     friend struct ShapeFileAccess;
     TriangleMesh();
     void SearchBox(const Bounds& box, void* context, BatchFunction found) const override;
+    void SearchNear(const Bounds& box, const float& maxDistance, void* context, BatchFunction found) const override;
     void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override;
     Vector3 InTree(const Vector3& v) const;
     float PadFor(float largestOrigin) const;

@@ -60,6 +60,27 @@ void TriangleMesh::SearchBox(const Bounds& box, void* context, BatchFunction fou
     });
 }
 
+void TriangleMesh::SearchNear(const Bounds& box, const float& maxDistance, void* context, BatchFunction found) const {
+    if (!box.lower.isAtMost(box.upper)) return;
+    const MeshTree& tree = *tree_;
+    tree.SearchNear(Unscaled(box, scale_, isScaled_), scale_.cwiseAbs(), maxDistance,
+                    [&](uint32_t begin, uint32_t end) {
+                        uint32_t ids[MeshNode::kMaxLeaf];
+                        int count = 0;
+                        const float maxSquare = SquareOfReach(maxDistance);
+                        for (uint32_t id = begin; id < end; ++id) {
+                            uint32_t corner[3];
+                            tree.CornersOf(id, corner);
+                            Bounds triangle;
+                            for (const uint32_t vertex : corner)
+                                triangle.Include(tree.vertices[vertex].cwiseProduct(scale_));
+                            ids[count] = id;
+                            count += SquaredDistance(triangle, box) <= maxSquare ? 1 : 0;
+                        }
+                        if (count > 0) found(context, ids, count);
+                    });
+}
+
 // Rays in the unscaled coordinates of the tree.
 inline Vector3 TriangleMesh::InTree(const Vector3& v) const { return isScaled_ ? Vector3(v.cwiseQuotient(scale_)) : v; }
 

@@ -59,7 +59,9 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
     for (int i = 0; i < batch.pointCount; ++i) {
         const Real after = batch.restitution * ImpactSpeed(batch, approach[i], Min(gap[i], approach[i] * hits.time), h);
         const Real leaving = Sqrt(Max(fall * fall + after * after - lift * lift, zero)) - fall;
-        hits.speed[i] = Select(isHit[i], Clamp(leaving, Real(1e-6f), approach[i]), zero);
+        // A body that gravity draws away from what it hits, such as a ball below a ceiling, leaves faster than it came.
+        const Real fastest = approach[i] - Real(2.0f) * Min(closing, zero) * h;
+        hits.speed[i] = Select(isHit[i], Clamp(leaving, Real(1e-6f), fastest), zero);
     }
     return hits;
 }

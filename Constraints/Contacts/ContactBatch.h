@@ -43,6 +43,11 @@ struct FixedSide {
     Vec3<Real> acceleration;
 };
 
+// A manifold is valid for small rotations only: points at a distance r from the center of a body that rotates by an
+// angle t deviate by r t^2 / 2 from the straight line of the rows. And a body that slides over a surface gets to other
+// triangles. These are the largest deviation and the largest sliding, as fractions of the smaller inner radius.
+inline constexpr float kMostDeviation = 0.07f, kMostSliding = 0.25f;
+
 template <int N, bool kFixedB>
 struct ContactBatch {
     using Real = Wide<N>;
@@ -54,6 +59,8 @@ struct ContactBatch {
     int32_t pointCount;     // maximum over the lanes
     bool bounces;           // some lane has restitution
     bool hasNotes = false;  // some lane reports contact events: see ContactNote
+    // Lanes whose bodies moved so far relative to each other that they should collide again.
+    uint16_t rotated = 0, slid = 0;
     const ContactRecord*
         surfaces;  // the records, if second bodies are dynamic and some lane has a surface velocity; else null
 
@@ -77,6 +84,9 @@ struct ContactBatch {
     Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
+    // How often the bodies collided in this step, squared: they collide again after as many times the relative motion
+    // for which one manifold is valid (UpdateSeparations).
+    Real collisions;
     Real maxPushSpeed;      // m/s: limit of the penetration recovery speed
     Real inverseSoftDepth;  // 1/m, of the overlap from which rows stiffen, see ContactSolveSettings
 
@@ -145,7 +155,7 @@ void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, 
 template <int N, bool kFixedB>
 void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
-// Updates the separations from the displacements.
+// Updates the separations from the displacements, and the lanes that should collide again.
 template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
@@ -158,6 +168,16 @@ void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, c
 // further. Sets BodyState::nearFixed if the second bodies are static or kinematic.
 template <int N, bool kFixedB>
 void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, const ContactSolveSettings& settings);
+
+// Replaces the rows of a lane by those of its record, `elapsed` seconds after the start of the step: with kRecollided
+// after the bodies collided again, with kApart by inactive ones. records: impulses are those of the last substep.
+// bodies: body A at index 0 and body B at index 1, at their poses at that time, with their displacements since the
+// start of the step. freeA, freeB: velocities without the impulses that the next substep's warm start applies again,
+// eight floats each; freeB is null if B is static or kinematic. The warm start becomes that of the new rows.
+template <int N, bool kFixedB>
+void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecord* records,
+                   const ConstSolverBodies& bodies, float* freeA, float* freeB, const ContactPrepareSettings& settings,
+                   float elapsed);
 
 // Writes the impulses back to the records, divided by `impulseScale`.
 template <int N, bool kFixedB>

@@ -6,6 +6,9 @@
 
 namespace fulcrum::contacts {
 
+// Fraction of the smaller inner radius up to which overlaps have the full softness (inverseSoftDepth).
+inline constexpr float kSoftFraction = 0.25f;
+
 // The two bodies' twists in lanes; whole rows, so that the scatter preserves their spare floats.
 template <int N, bool kFixedB>
 struct Twists {

@@ -60,8 +60,9 @@ struct alignas(32) ContactRecord {
     }
 
     // Features that few contacts have, as bits.
-    enum Mark { kSurfaceVelocity = 1, kMassOverride = 2, kSensed = 4 };
+    enum Mark { kSurfaceVelocity = 1, kMassOverride = 2, kSensed = 4, kRecollided = 8, kApart = 16 };
     // kSensed: the contact is an event, but not solved
+    // kRecollided: it was found again within the step, and its rows are to be replaced; kApart: it was not found
     bool Has(Mark mark) const { return (static_cast<int>(marks) & mark) != 0; }
     void Set(Mark mark, bool has) {
         const int others = static_cast<int>(marks) & ~mark;

@@ -10,8 +10,6 @@ using namespace contacts;
 
 // Larger coefficients are clamped to this, which keeps force limits finite.
 constexpr float kMostFriction = 1e6f;
-// Fraction of the smaller inner radius up to which overlaps have the full softness.
-constexpr float kSoftFraction = 0.25f;
 
 // The terms of the response matrices, summed over both bodies.
 template <class Real>
@@ -216,6 +214,8 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.tangent2 = t2;
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
+    batch.rotated = batch.slid = 0;
+    batch.collisions = Real(1.0f);
     batch.maxPushSpeed = Real(settings.maxPushSpeed);
     batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));

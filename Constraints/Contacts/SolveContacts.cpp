@@ -6,6 +6,28 @@ namespace {
 
 using namespace contacts;
 
+// Finds the lanes whose bodies have moved farther relative to each other since they collided last. moved: since the
+// start of the step.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void FindOutdated(ContactBatch<N, kFixedB>& batch, const Twist<Wide<N>>& moved) {
+    using Real = Wide<N>;
+    const uint32_t used = (1u << batch.count) - 1;
+    Real arm = Dot<Real>(batch.armA, batch.armA);
+    if constexpr (!kFixedB) arm = Max(arm, Dot<Real>(batch.sideB.arm, batch.sideB.arm));
+    const Real perRadius = batch.inverseSoftDepth * batch.inverseSoftDepth;
+    // t^2 r > 2 kMostDeviation times the inner radius, squared.
+    const Real angle = Dot<Real>(moved.angular, moved.angular),
+               most = batch.collisions * Real(2 * kMostDeviation / kSoftFraction);
+    batch.rotated = static_cast<uint16_t>((angle * angle * arm * perRadius > most * most).ToBits() & used);
+    if constexpr (kFixedB) {
+        const Real along = Dot<Real>(moved.linear, batch.normal);
+        const Real distance = Dot<Real>(moved.linear, moved.linear) - along * along;
+        constexpr float kMost = kMostSliding / kSoftFraction;
+        const auto slid = distance * perRadius > batch.collisions * Real(kMost * kMost);
+        batch.slid = static_cast<uint16_t>(slid.ToBits() & used);
+    }
+}
+
 template <Pass kPass, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                        const ContactSolveSettings& settings) {
@@ -41,12 +63,13 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Displacement>(batch, states, twists);
-    const NormalMotion<Real> motion =
-        NormalMotionOf(batch, RelativeTwist<BodyRow::Displacement>(batch, twists, settings.elapsed));
+    const Twist<Real> moved = RelativeTwist<BodyRow::Displacement>(batch, twists, settings.elapsed);
+    const NormalMotion<Real> motion = NormalMotionOf(batch, moved);
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         row.separation = row.startSeparation + MotionOf(row, motion);
     }
+    FindOutdated(batch, moved);
 }
 
 template <int N, bool kFixedB>

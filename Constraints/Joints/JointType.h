@@ -9,6 +9,7 @@
 #include <Fulcrum/Constraints/Joints/SettingVisitor.h>
 #include <Fulcrum/Constraints/Parts/AnglePart.h>
 #include <Fulcrum/Constraints/Parts/AxisPart.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <array>
@@ -87,6 +88,7 @@ struct JointDrawing;
 
 class JointType {
 public:
+    FULCRUM_WORLD_MEMORY
     virtual ~JointType() = default;
 
     // The type's name for display, and what to draw of the joint (JointDrawing.h), by default its frames only.

@@ -19,13 +19,48 @@ std::string LineOf(const RunRecord& run) {
     return text;
 }
 
-std::string Advice(const SceneRuns& scene, const RunRecord* chosen, const std::string& wish) {
+// Why the errors of a scene end where they do.
+std::string WhyNoLessError(std::span<const RunRecord> runs) {
+    const std::vector<size_t> envelope = Envelope(runs);
+    if (envelope.empty()) return {};
+    const RunRecord& best = runs[envelope.back()];
+    std::string text;
+    char line[240];
+    if (const auto blewUp = std::ranges::count_if(runs, &RunRecord::blewUp); blewUp > 0) {
+        std::snprintf(line, sizeof line, "  %d of %zu settings blew up\n", static_cast<int>(blewUp), runs.size());
+        text += line;
+    }
+    for (const std::string& gate : best.failedGates)
+        text += "  at the most exact one this does not hold: " + gate + "\n";
+    if (!best.worst.empty()) text += "  the largest error of the most exact one: " + best.worst + "\n";
+    // The best run of at most half its cost.
+    const RunRecord* cheaper = BestWithin(runs, 0.5 * best.microseconds);
+    if (!cheaper || !(best.Error() > 0)) return text;
+    const double work = best.microseconds / cheaper->microseconds, gain = cheaper->Error() / best.Error();
+    constexpr double kNoGain = 1.1;
+    if (gain < kNoGain)
+        std::snprintf(line, sizeof line,
+                      "  %.1f times the work has lowered the error by %.2g %% alone: more effort will not do; what is "
+                      "left is in the scene\n",
+                      work, 100 * (1 - 1 / gain));
+    else
+        std::snprintf(line, sizeof line,
+                      "  the last %.1f times the work have lowered the error %.1f times: it still falls, beyond this "
+                      "grid\n",
+                      work, gain);
+    return text + line;
+}
+
+// whyNot: lines that explain why there is no such setting.
+std::string Advice(const SceneRuns& scene, const RunRecord* chosen, const std::string& wish,
+                   const std::string& whyNot) {
     const std::vector<size_t> envelope = Envelope(scene.runs);
     std::string text = scene.scene->FullName() + ": " + scene.scene->what + "\nerror: " + scene.scene->error + "\n\n";
     if (envelope.empty()) return text + "No setting: all runs blew up.\n";
     if (!chosen) {
-        return text + "No setting of this grid has " + wish + ". The cheapest and the most exact one:\n  " +
-               LineOf(scene.runs[envelope.front()]) + "\n  " + LineOf(scene.runs[envelope.back()]) + "\n";
+        text += "No setting of this grid has " + wish + ". The cheapest and the most exact one:\n  " +
+                LineOf(scene.runs[envelope.front()]) + "\n  " + LineOf(scene.runs[envelope.back()]) + "\n";
+        return whyNot.empty() ? text : text + "What stands in the way:\n" + whyNot;
     }
     // The choice is on the envelope, or as good as a run that is.
     size_t at = 0;
@@ -44,14 +79,21 @@ std::string Advice(const SceneRuns& scene, const RunRecord* chosen, const std::s
 std::string AdviceForError(const SceneRuns& scene, double error) {
     char wish[64];
     std::snprintf(wish, sizeof wish, "an error of at most %.3g %%", 100 * error);
-    return Advice(scene, CheapestFor(scene.runs, error), wish);
+    return Advice(scene, CheapestFor(scene.runs, error), wish, WhyNoLessError(scene.runs));
 }
 
 std::string AdviceForBudget(const SceneRuns& scene, double milliseconds) {
     char wish[64];
     std::snprintf(wish, sizeof wish, "at most %.3g ms a frame", milliseconds);
     const RunRecord* best = BestWithin(scene.runs, milliseconds * kMicrosecondsPerMs);
-    std::string text = Advice(scene, best, wish);
+    std::string whyNot;
+    if (const std::vector<size_t> envelope = Envelope(scene.runs); !envelope.empty()) {
+        char line[64];
+        std::snprintf(line, sizeof line, "  the cheapest takes %.3g times as long\n",
+                      scene.runs[envelope.front()].microseconds / (milliseconds * kMicrosecondsPerMs));
+        whyNot = line;
+    }
+    std::string text = Advice(scene, best, wish, whyNot);
     const std::string cheapest = "Cheapest setting with ";
     if (const size_t at = text.find(cheapest); at != std::string::npos)
         text.replace(at, cheapest.size(), "Most exact setting with ");

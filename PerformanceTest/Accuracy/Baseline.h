@@ -11,16 +11,16 @@
 
 namespace fulcrum::accuracy {
 
-// The errors of all runs, the gates that failed and the traversals of constraints per simulated second, which are the
-// same on every machine; one line per run: scene, then setting. Seven digits, so that the last ones of the closed
-// forms, which mathematical libraries differ in, are not kept.
+// The errors of all runs, the requirements that failed and the traversals of constraints per simulated second, which
+// are the same on every machine; one line per run: scene, then setting. Seven digits, so that the last ones of the
+// closed forms, which mathematical libraries differ in, are not kept.
 std::string BaselineOf(std::span<const RunRecord> runs, bool isQuick);
 // Error OutOfRange: the file cannot be written.
 Status SaveBaseline(const std::filesystem::path& path, std::span<const RunRecord> runs, bool isQuick);
 
 struct Comparison {
-    // One line each: an error that increased or is no longer finite; a gate that fails; a run that is missing, or that
-    // the baseline does not have; traversals that increased by more than kDearer.
+    // One line each: an error that increased or is no longer finite; a requirement that fails; a run that is missing,
+    // or that the baseline does not have; traversals that increased by more than kDearer.
     std::vector<std::string> worse;
     std::vector<std::string> better;  // errors that decreased; traversals that did by more than kDearer
     size_t same = 0;                  // unchanged errors

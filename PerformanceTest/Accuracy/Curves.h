@@ -24,7 +24,7 @@ double Floor(std::span<const RunRecord> runs);
 
 // The cheapest run with an error of at most this; null if there is none.
 const RunRecord* CheapestFor(std::span<const RunRecord> runs, double error);
-// The cheapest run that fails no gate; null if there is none.
+// The cheapest run that meets all requirements; null if there is none.
 const RunRecord* CheapestThatPasses(std::span<const RunRecord> runs);
 // The most exact run of at most this cost, microseconds per simulated second; null if there is none.
 const RunRecord* BestWithin(std::span<const RunRecord> runs, double microseconds);

@@ -29,6 +29,7 @@ std::vector<PlannedRun> Plan(const LabOptions& options) {
     for (const LabScene* scene : options.scenes) {
         const auto grid = !options.settings.empty() ? options.settings
                           : options.comparesTargets ? TargetGrid(scene->influences)
+                          : options.advises         ? AdviceGrid(scene->influences)
                           : options.isQuick         ? QuickGrid(scene->influences)
                                                     : FullGrid(scene->influences, scene->isSlow);
         for (const Setting& setting : grid)

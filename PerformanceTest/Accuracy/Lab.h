@@ -14,6 +14,7 @@ struct LabOptions {
     std::vector<Setting> settings;  // in place of the grid; empty: the grid
     bool isQuick = false;
     bool comparesTargets = false;  // the grid is TargetGrid
+    bool advises = false;          // the grid is AdviceGrid
     bool isTimedOnce = false;      // else costs are medians of five runs, unless that takes too long
     int threads = 1;               // runs at a time; the engine of each has one thread
     bool resumes = false;

@@ -64,6 +64,7 @@ public:
     std::vector<NamedValue> errors, figures;
     std::vector<double> observed;
     std::vector<std::string> failedGates;  // each once
+    std::string worst;                     // what has the largest error, and when; empty: unknown
     Work work;
 };
 

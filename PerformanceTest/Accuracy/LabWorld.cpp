@@ -28,6 +28,10 @@ LabWorld::LabWorld(LabRun& run, SystemSettings settings) : run_(run) {
     settings.sleep.enabled = false;
     settings.narrowPhase = effort.narrowPhase;
     if (std::isinf(effort.exactJointLoad)) settings.exactJointLoad = effort.exactJointLoad;
+    if (run.setting.family == Family::Target || run.setting.family == Family::Fixed) {
+        settings.accuracy.penetration = effort.accuracy.penetration;
+        settings.accuracy.jointError = effort.accuracy.jointError;
+    }
     system_ = PhysicsSystem::Create(settings, run.jobs).Value();
 }
 

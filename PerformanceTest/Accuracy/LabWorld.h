@@ -20,7 +20,8 @@ class LabWorld {
 public:
     // With the run's setting; `change` may change the rest of the settings.
     explicit LabWorld(LabRun& run, const Vector3& gravity = kDown, void (*change)(SystemSettings&) = Nothing);
-    // The same with a scene's own settings, but for the effort, which is the run's, and sleep, which is off.
+    // The same with a scene's own settings, but for the effort, which is the run's, its accuracy target if it has one,
+    // and sleep, which is off.
     LabWorld(LabRun& run, SystemSettings settings);
     // Requires that all poses are finite and no body has gone farther than `domain`; adds the work to the run's.
     ~LabWorld();

@@ -33,10 +33,9 @@ Status ChooseScenes(const std::string& name, LabOptions& lab) {
 
 Result<LabCommand> ParseAdvise(std::vector<std::string> arguments) {
     LabCommand command;
-    command.lab.isQuick = true;
-    command.lab.resumes = true;
+    command.lab.isQuick = command.lab.advises = command.lab.resumes = true;
     std::string name;
-    CLI::App app("Names the cheapest setting for your scene, or one of ours, from a short grid of runs",
+    CLI::App app("Names the cheapest setting or target for your scene, or one of ours, from a short grid of runs",
                  "./fulcrum advise");
     app.add_option("SCENE", name, "your scene: FILE.json or FILE.cbor; or one of ./fulcrum accuracy or ./fulcrum list")
         ->required();
@@ -102,7 +101,7 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
         ->type_name("FILE");
     app.add_flag("--soak", command.soaks,
                  "10^6 steps of the scene soak at the default setting, with 1 thread, then with 2, and nothing else: "
-                 "some minutes; exit status 1 where a gate fails");
+                 "some minutes; exit status 1 where a requirement fails");
     app.add_flag(
         "--recordings", command.recordings.isOfAll,
         "record all runs to pages in DIR/recordings, which the dots of the report link to: about a megabyte each");

@@ -116,6 +116,7 @@ RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, b
     }
     record.traversals /= std::max(simulated, 1e-9);
     record.effortReturns = runs[0].work.effortReturns;
+    record.worst = runs[0].worst;
     record.timedRuns = static_cast<int>(microseconds.size());
     record.microseconds = Median(std::move(microseconds));
     record.blewUp = !(record.Error() <= scene.blowUp);
@@ -148,6 +149,7 @@ Json ToJson(const RunRecord& record) {
     json["us_per_second"] = NumberJson(record.microseconds);
     json["cost_ratio"] = NumberJson(record.costRatio);
     json["timed_runs"] = record.timedRuns;
+    if (!record.worst.empty()) json["worst"] = record.worst;
     if (!record.recording.empty()) json["recording"] = record.recording;
     return json;
 }
@@ -172,6 +174,7 @@ Result<RunRecord> RecordFromJson(const Json& json) {
         record.figures = ListOf(json.at("figures"));
         for (const Json& value : json.at("observed")) record.observed.push_back(NumberOf(value));
         record.failedGates = json.at("failed_gates").get<std::vector<std::string>>();
+        record.worst = json.value("worst", "");
         record.blewUp = json.at("blew_up").get<bool>();
         record.seeds = json.at("seeds").get<int>();
         record.hash = json.at("hash").get<uint64_t>();

@@ -111,6 +111,15 @@ std::vector<Setting> QuickGrid(const Influences& influences) {
     return grid.Take();
 }
 
+std::vector<Setting> AdviceGrid(const Influences& influences) {
+    std::vector<Setting> settings = QuickGrid(influences);
+    if (!influences.contacts && !influences.joints) return settings;
+    for (const SolverSettings& solver : {SolverSettings::Fast(), SolverSettings::Balanced()})
+        for (const float target : {0.1f, 0.03f, 0.01f, 0.003f, 0.001f})
+            settings.push_back({.solver = solver, .family = Family::Target, .target = target});
+    return settings;
+}
+
 std::vector<Setting> TargetGrid(const Influences& influences) {
     std::vector<Setting> settings;
     if (!influences.contacts && !influences.joints) return settings;

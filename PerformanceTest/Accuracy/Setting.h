@@ -51,6 +51,8 @@ struct Influences {
 // The presets, then steps of 1/30 to 1/240 s at the default effort, ten iterations, and one or two of each other
 // family: about 12.
 std::vector<Setting> QuickGrid(const Influences& influences);
+// The same, and targets of 10 % to 0.1 % that start from the presets Fast and Balanced: what `advise` chooses from.
+std::vector<Setting> AdviceGrid(const Influences& influences);
 // Fixed efforts of 1 to 181 substeps against targets of 40 % to 0.01 % that start from 1, 2 or 4 substeps, at steps of
 // 1/30 and 1/60 s.
 std::vector<Setting> TargetGrid(const Influences& influences);

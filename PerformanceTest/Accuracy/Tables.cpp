@@ -50,7 +50,7 @@ std::string AccuracyTable(std::span<const SceneRuns> scenes, bool isExtreme) {
     std::vector<std::string> heading = {"scene"};
     for (const char* preset : kPresets) heading.push_back(preset);
     for (const char* name : {"slope", "floor", "10 %", "1 %", "0.1 %"}) heading.push_back(name);
-    if (isExtreme) heading.insert(heading.end(), {"cheapest that passes", "gates that the default fails"});
+    if (isExtreme) heading.insert(heading.end(), {"cheapest that passes", "requirements that the default fails"});
     std::string table = Heading(heading);
     for (const SceneRuns& each : scenes) {
         if (each.scene->isExtreme != isExtreme) continue;

@@ -8,6 +8,7 @@
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 namespace fulcrum::accuracy {
@@ -28,20 +29,51 @@ double SizeOf(const BodyInterface& bodies, BodyId id, bool inner) {
     return double{inner ? shape->InnerRadius() : shape->OuterRadius()};
 }
 
-// The larger of the step's largest overlap and largest gap, relative to the sizes of the bodies.
-double ErrorOf(LabWorld& world) {
+// An error, and the bodies or the joint that have it.
+struct StepError {
+    double value = 0;  // relative to the size of the smaller body
+    BodyId bodyA, bodyB;
+    JointId joint;
+    bool isGap = false;
+    double time = 0;  // s
+};
+
+// The larger of the step's largest overlap and largest gap.
+StepError ErrorOf(LabWorld& world) {
     const BodyInterface& bodies = world.Bodies();
     const StepReport& report = world.System().Report();
-    double error = 0;
+    StepError error{.bodyA = report.deepestA, .bodyB = report.deepestB, .joint = {}, .time = world.Time()};
     if (report.largestPenetration > 0)
-        error = double{report.largestPenetration} /
-                std::min(SizeOf(bodies, report.deepestA, true), SizeOf(bodies, report.deepestB, true));
+        error.value = double{report.largestPenetration} /
+                      std::min(SizeOf(bodies, report.deepestA, true), SizeOf(bodies, report.deepestB, true));
     world.Joints().Visit([&](JointId id) {
-        const double size = std::min(SizeOf(bodies, world.Joints().GetBodyA(id), false),
-                                     SizeOf(bodies, world.Joints().GetBodyB(id), false));
-        error = std::max(error, static_cast<double>(world.Joints().GetError(id).distance) / size);
+        const BodyId a = world.Joints().GetBodyA(id), b = world.Joints().GetBodyB(id);
+        const double gap = static_cast<double>(world.Joints().GetError(id).distance) /
+                           std::min(SizeOf(bodies, a, false), SizeOf(bodies, b, false));
+        if (gap <= error.value) return;
+        error = {.value = gap, .bodyA = a, .bodyB = b, .joint = id, .isGap = true, .time = world.Time()};
     });
     return error;
+}
+
+// `name`, or "body 3" by the place in its list.
+template <class Id, class Elements>
+std::string NameOf(const char* kind, Id id, const std::vector<Id>& ids, const Elements& elements) {
+    const auto at = static_cast<size_t>(std::find(ids.begin(), ids.end(), id) - ids.begin());
+    if (at == ids.size()) return std::string("a ") + kind + " of a ragdoll";
+    return elements[at].name.empty() ? kind + (" " + std::to_string(at)) : "`" + elements[at].name + "`";
+}
+
+// "4.2 % at 3.1 s, joint 3 between `pier` and body 7".
+std::string TextOf(const StepError& error, const SceneIds& ids) {
+    char number[64];
+    std::snprintf(number, sizeof number, "%.3g %% at %.3g s, ", 100 * error.value, error.time);
+    const auto body = [&](BodyId id) {
+        return id == kWorldBody ? "the world" : NameOf("body", id, ids.bodies, theScene.description.bodies);
+    };
+    const std::string between = body(error.bodyA) + " and " + body(error.bodyB);
+    if (!error.isGap) return number + between;
+    return number + NameOf("joint", error.joint, ids.joints, theScene.description.joints) + " between " + between;
 }
 
 void Run(LabRun& run) {
@@ -54,14 +86,19 @@ void Run(LabRun& run) {
     const double duration = std::min(description.steps * description.dt, run.Seconds(60, 10)),
                  settles = std::min(0.5, 0.5 * duration);
     std::vector<double> errors;
+    StepError worst;
     for (int i = run.Steps(duration); i > 0; --i) {
         world.Step();
-        if (world.Time() >= settles) errors.push_back(ErrorOf(world));
+        if (world.Time() < settles) continue;
+        const StepError error = ErrorOf(world);
+        errors.push_back(error.value);
+        if (error.value > worst.value) worst = error;
     }
     const auto rank = errors.begin() + static_cast<ptrdiff_t>(errors.size() * 19 / 20);
     std::nth_element(errors.begin(), rank, errors.end());
     run.Error("overlap_or_gap", *rank);
     run.Figure("energy", world.System().GetEnergy());
+    if (worst.value > 0) run.worst = TextOf(worst, ids.Value());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What a feature costs: a step of 1000 bodies, pairs or joints with it, per body, pair or joint, and the memory that it
-// takes. Compare with the row that it builds on. Times, all in one sitting:
+// takes. Compare with the row that it builds on. Times, all taken in one run:
 //   FulcrumKernels --benchmark_filter=Feature --benchmark_enable_random_interleaving --benchmark_repetitions=9
 // Instructions, which repeat: 1e5 times those of one row (100 steps) are what this says
 //   valgrind --tool=callgrind --toggle-collect='fulcrum::PhysicsSystem::Update(double)' FulcrumKernels

@@ -64,18 +64,21 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     parameter_ = path_->Closest(local, parameter_);
     const PathSample at = path_->Sample(parameter_);
     const Vector3 away = local - at.position;
-    // Rotation is locked only near the path: far from it the nearest point moves along the path as bodies rotate, and
-    // would rotate them further. The force on A acts at the point of the path where B should be: a lever arm as long as
-    // the gap would spin up the bodies.
+    // The force on A acts at the point of the path where B should be: a lever arm as long as the gap would spin up the
+    // bodies.
     constexpr float kNear = 0.1f;  // m
-    const bool isNear = LengthSquared(away) < kNear * kNear;
+    const float squaredGap = LengthSquared(away);
+    const bool isNear = squaredGap < kNear * kNear;
     JointPose acting = pose;
     if (!isNear) acting.armA -= Rotate(pose.frameA, away);
     JointRow along;
     acting.SetAlong(along, Rotate(pose.frameA, at.tangent));
     const double distance = DistanceAlong(*path_, parameter_, at, local);
     AddControlRows(Bounded(), pose, along, distance, kLinearSlackSpeed, PathSlots::kAlong, rows);
-    if (isNear && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal))
+    // Far from a curve the nearest point moves along it as bodies rotate, by the gap times their angle, and its frame
+    // rotates by that over the radius of curvature: rotation is locked where that is less than half of their angle.
+    const bool isFollowing = isNear || squaredGap * LengthSquared(at.turn) < 0.25f;
+    if (isFollowing && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal))
         AddRotationRows(pose, at, along, rows);
     uint32_t slot = PathSlots::kAcross;
     for (const Vector3& normal : {at.normal, at.binormal}) {
@@ -100,11 +103,15 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
         // Opposite axes: any perpendicular axis, so the normal.
         error = sine > 1e-6f || x.x() > 0.0f ? Vector3(0, -x.z() * scale, x.y() * scale) : Vector3(0, angle, 0);
     }
+    // Large errors are pulled, by rotations about the centers of mass that do not move B along the path: with the
+    // frame's share of it they would be about other axes, and never end.
+    constexpr float kLarge = 0.5f;  // rad
+    const bool movesFrame = LengthSquared(error) < kLarge * kLarge;
     const Vector3 axes[3] = {at.tangent, at.normal, at.binormal};
     for (int k = rotation_ == PathRotation::Tangent ? 1 : 0; k < 3; ++k) {
         JointRow& row = rows.Add(PathSlots::kRotation + static_cast<uint32_t>(k), JointRow::Kind::Equal);
         pose.SetAbout(row, Rotate(pose.frameA, axes[k]));
-        const float turn = Dot(axes[k], at.turn);
+        const float turn = movesFrame ? Dot(axes[k], at.turn) : 0.0f;
         RowJacobian<float>& j = row.jacobian;
         j.a.linear -= along.jacobian.a.linear * turn;
         j.a.angular -= along.jacobian.a.angular * turn;

@@ -90,7 +90,7 @@ private:
 // reported.
 class QueryScope {
 public:
-    explicit QueryScope(WorldState& world) : shared_(world.lock) {
+    explicit QueryScope(WorldState& world) : shared_(world.lock, WorldLock::Access::Queries) {
         if (shared_.Refusal()) ReportMisuse(*shared_.Refusal());
         else world.outsideFatBounds.Refresh(world.bodies, world.colliders);
     }

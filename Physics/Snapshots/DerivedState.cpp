@@ -135,7 +135,7 @@ void SnapshotAccess::UpdateTrees(const BodyStore& bodies, ColliderStore& store) 
 
 void SnapshotAccess::ClearColors(uint32_t bodies, ConstraintColoring& coloring) {
     for (ConstraintColoring::Color& color : coloring.colors_)
-        for (std::vector<ConstraintColoring::Entry>& list : color.lists) list.clear();
+        for (Array<ConstraintColoring::Entry>& list : color.lists) list.clear();
     coloring.ReserveBodies(bodies);
     std::ranges::fill(coloring.used_, uint64_t{0});
     std::ranges::fill(coloring.overflows_, 0u);
@@ -145,7 +145,7 @@ void SnapshotAccess::ClearColors(uint32_t bodies, ConstraintColoring& coloring) 
 void SnapshotAccess::ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
                                const ConstraintColoring::Entry& entry, const ColorSlot& place) {
     if (place.color == ColorSlot{}.color) return;
-    std::vector<ConstraintColoring::Entry>& list = coloring.List(place.color, kind);
+    Array<ConstraintColoring::Entry>& list = coloring.List(place.color, kind);
     if (place.slot >= list.size()) list.resize(place.slot + 1);
     list[place.slot] = entry;
     ++coloring.size_;

@@ -27,12 +27,12 @@ Error Missing(const char* what, uint64_t hash, const char* remedy) {
 struct Found {
     SnapshotHead head;
     // By body; null: keeps its current one.
-    std::vector<ShapePtr> shapes;
-    std::vector<std::shared_ptr<MutableCompound>> compounds;
-    std::vector<std::shared_ptr<const GroupFilter>> filters;  // by number
-    std::vector<uint32_t> filtered;                 // for each body with a filter: its index, then the filter's number
-    std::vector<bool> hasJoint;                     // by joint
-    std::vector<std::unique_ptr<JointType>> types;  // by joint; null: keeps its current one
+    Array<ShapePtr> shapes;
+    Array<std::shared_ptr<MutableCompound>> compounds;
+    Array<std::shared_ptr<const GroupFilter>> filters;  // by number
+    Array<uint32_t> filtered;                 // for each body with a filter: its index, then the filter's number
+    Array<bool> hasJoint;                     // by joint
+    Array<std::unique_ptr<JointType>> types;  // by joint; null: keeps its current one
 };
 
 // ---- Shapes
@@ -63,7 +63,7 @@ private:
 
     const BodyStore& bodies_;
     std::span<const ShapePtr> given_;
-    std::vector<Entry> shapes_;
+    Array<Entry> shapes_;
 };
 
 Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const ShapePtr> given, Found& found) {
@@ -71,7 +71,7 @@ Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const Sh
     found.shapes.resize(count);
     found.compounds.resize(count);
     KnownShapes known(bodies, given);
-    std::vector<uint32_t> ownCompounds;
+    Array<uint32_t> ownCompounds;
     for (uint32_t i = 0; i < count; ++i) {
         const uint64_t hash = s.Get<uint64_t>();
         if (hash == kOwnCompound) ownCompounds.push_back(i);
@@ -82,12 +82,12 @@ Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const Sh
         if (!found.shapes[i])
             return Missing("a shape", hash, "no body of the world has; give it in SnapshotSources::shapes");
     }
-    std::vector<uint8_t> bytes;
+    Array<uint8_t> bytes;
     for (const uint32_t i : ownCompounds) {
         s.List(bytes);
         if (i < bodies.Size() && bodies.cold[i].children) {
             const Result<std::vector<uint8_t>> now = SaveShape(*bodies.cold[i].shape);
-            if (now && now.Value() == bytes) continue;
+            if (now && std::ranges::equal(now.Value(), bytes)) continue;
         }
         const Result<ShapePtr> shape = LoadShape(bytes);
         if (!shape) return shape.GetError();
@@ -104,7 +104,7 @@ Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const Sh
 // are first the body's own, then those of other bodies, then the given ones.
 Status FindFilters(SnapshotReader& s, const BodyStore& bodies,
                    std::span<const std::shared_ptr<const GroupFilter>> given, Found& found) {
-    std::vector<uint64_t> hashes(s.Get<uint32_t>());
+    Array<uint64_t> hashes(s.Get<uint32_t>());
     for (uint64_t& hash : hashes) s(hash);
     s.List(found.filtered);
     found.filters.resize(hashes.size());
@@ -157,11 +157,11 @@ bool WriteSettings(JointType& type, std::span<const std::byte> settings) {
 }
 
 Status FindJointTypes(SnapshotReader& s, const JointStore& joints, const SnapshotSources& sources,
-                      std::vector<std::byte>& now, Found& found) {
+                      Array<std::byte>& now, Found& found) {
     const uint32_t count = found.head.joints;
     found.hasJoint.resize(count);
     found.types.resize(count);
-    std::vector<std::byte> settings;
+    Array<std::byte> settings;
     for (uint32_t i = 0; i < count; ++i) {
         const bool exists = s.Get<bool>();
         const uint32_t generation = s.Get<uint32_t>();

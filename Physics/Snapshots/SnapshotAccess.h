@@ -228,8 +228,8 @@ void SnapshotAccess::VisitSensors(Stream& s, Sensors& store, Changed& itsChanged
 // Names all members: those not used here are written elsewhere, are temporary, or are derived.
 template <class Stream, class World, class Step>
 void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts) {
-    auto& [settings, ownJobs, jobs, listener, observer, callObserver, bodies, colliders, itsPairs, joints, coloring,
-           sleeping, sensors, removed, number, lock, outsideFatBounds] = world;
+    auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, itsPairs, joints, coloring, sleeping,
+           sensors, removed, number, lock, outsideFatBounds] = world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events, errors] = step;
     auto& [deepOverlaps, dispersing, crowded] = crowd;

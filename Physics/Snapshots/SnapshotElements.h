@@ -138,8 +138,8 @@ void VisitOddities(Stream& s, Cold& body, bool isOdd) {
 template <class Stream, class Cold>
 bool VisitCold(Stream& s, Cold& body) {
     auto& [shape, userData, material, force, torque, penetrationTarget, filter, firstCollider, colliderCount, children,
-           generation, awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, exists, placed,
-           removed, isSensor, isSteady, isWorld, hasGravity] = body;
+           generation, awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, placed,
+           isSteady, exists, removed, isSensor, isWorld, hasGravity] = body;
     s(generation);
     // Members that few bodies use.
     bool isOdd = false;

@@ -6,6 +6,7 @@
 #include <Fulcrum/Math/Assert.h>
 #include <Fulcrum/Math/Bounds.h>
 #include <Fulcrum/Math/Hash.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Pose.h>
 
 #include <algorithm>
@@ -80,10 +81,18 @@ class SnapshotWriter {
 public:
     static constexpr bool kWrites = true;
 
-    // Overwrites `bytes` from the beginning, growing as needed; with keeps = false it only hashes, and uses `bytes` as
-    // buffer.
-    SnapshotWriter(std::vector<std::byte>& bytes, std::vector<SnapshotBlock>& blocks, bool keeps)
-        : bytes_(bytes), blocks_(blocks), keeps_(keeps) {
+    // Overwrites `bytes`, a std::vector or Array of them, from the beginning, growing as needed; with keeps = false it
+    // only hashes, and uses `bytes` as buffer.
+    template <class Bytes>
+    SnapshotWriter(Bytes& bytes, Array<SnapshotBlock>& blocks, bool keeps)
+        : owner_(&bytes),
+          resize_([](void* owner, size_t size) {
+              static_cast<Bytes*>(owner)->resize(size);
+              return static_cast<Bytes*>(owner)->data();
+          }),
+          bytes_(bytes.data(), bytes.size()),
+          blocks_(blocks),
+          keeps_(keeps) {
         blocks_.clear();
         Reserve(sizeof(SnapshotHeader));
         if (keeps) at_ = blockStart_ += sizeof(SnapshotHeader);
@@ -103,8 +112,8 @@ public:
         at_ = at;
     }
     // An array of values; reserves by itself.
-    template <class T>
-    void List(const std::vector<T>& values) {
+    template <class T, class AnyAllocator>
+    void List(const std::vector<T, AnyAllocator>& values) {
         static_assert(IsPlain<T>::value);
         Reserve(sizeof(uint32_t) + values.size() * sizeof(T));
         (*this)(static_cast<uint32_t>(values.size()));
@@ -130,14 +139,17 @@ private:
     // Grows by at least an eighth: new bytes are zeroed before they are written.
     void Grow(size_t bytes) {
         const size_t at = Size(), start = static_cast<size_t>(blockStart_ - bytes_.data());
-        bytes_.resize(std::max(at + bytes, bytes_.size() + bytes_.size() / 8));
+        const size_t size = std::max(at + bytes, bytes_.size() + bytes_.size() / 8);
+        bytes_ = {resize_(owner_, size), size};
         at_ = bytes_.data() + at;
         blockStart_ = bytes_.data() + start;
         end_ = bytes_.data() + bytes_.size();
     }
 
-    std::vector<std::byte>& bytes_;
-    std::vector<SnapshotBlock>& blocks_;
+    void* owner_;  // the container of the bytes
+    std::byte* (*resize_)(void* owner, size_t size);
+    std::span<std::byte> bytes_;
+    Array<SnapshotBlock>& blocks_;
     bool keeps_;
     std::byte *at_ = bytes_.data(), *blockStart_ = at_, *end_ = at_ + bytes_.size();
     uint64_t hash_ = kHashSeed;
@@ -168,8 +180,8 @@ public:
         (*this)(value);
         return value;
     }
-    template <class T>
-    void List(std::vector<T>& values) {
+    template <class T, class AnyAllocator>
+    void List(std::vector<T, AnyAllocator>& values) {
         static_assert(IsPlain<T>::value);
         const size_t count = Get<uint32_t>();
         values.resize(Has(count * sizeof(T)) ? count : 0);

@@ -10,17 +10,19 @@ namespace fulcrum {
 
 // Group filters of bodies in the order of their first use.
 struct NumberedFilters {
-    std::vector<const GroupFilter*> filters;
-    std::vector<uint32_t> bodies;                  // for each body with a filter: its index, then the filter's number
+    Array<const GroupFilter*> filters;
+    Array<uint32_t> bodies;                        // for each body with a filter: its index, then the filter's number
     uint32_t NumberOf(const GroupFilter* filter);  // not null
 };
 
 // Temporary lists of a snapshot, which keep their memory.
 struct SnapshotRoom {
-    std::vector<SnapshotBlock> blocks;
-    std::vector<std::byte> block;  // for HashOfState
-    std::vector<std::byte> settings;
-    std::vector<uint32_t> changed;
+    FULCRUM_WORLD_MEMORY
+
+    Array<SnapshotBlock> blocks;
+    Array<std::byte> block;  // for HashOfState
+    Array<std::byte> settings;
+    Array<uint32_t> changed;
     NumberedFilters filters;
     SavedEfforts efforts;
 };
@@ -59,7 +61,7 @@ Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sou
                     WorldState& world, StepState& step);
 
 // Writes the data shown by the type's VisitSettings to the list, replacing its contents.
-void ReadSettings(JointType& type, std::vector<std::byte>& settings);
+void ReadSettings(JointType& type, Array<std::byte>& settings);
 // Hash of its Kind().
 uint64_t KindHash(const JointType& type);
 

@@ -22,11 +22,11 @@ size_t HeapBytes(const SnapshotRoom& room) {
     return HeapBytes(blocks, block, settings, changed, filters.filters, filters.bodies, efforts);
 }
 
-void ReadSettings(JointType& type, std::vector<std::byte>& settings) {
+void ReadSettings(JointType& type, Array<std::byte>& settings) {
     settings.clear();
     type.VisitSettings(SettingVisitor(
         [](void* to, void* bytes, size_t size) {
-            auto& list = *static_cast<std::vector<std::byte>*>(to);
+            auto& list = *static_cast<Array<std::byte>*>(to);
             list.resize(list.size() + size);
             std::memcpy(list.data() + list.size() - size, bytes, size);
         },
@@ -89,7 +89,7 @@ void WriteFilters(SnapshotWriter& s, const BodyStore& bodies, NumberedFilters& n
     s.EndBlock();
 }
 
-void WriteJointTypes(SnapshotWriter& s, const JointStore& joints, std::vector<std::byte>& settings) {
+void WriteJointTypes(SnapshotWriter& s, const JointStore& joints, Array<std::byte>& settings) {
     s.Begin(SnapshotSection::JointTypes);
     for (uint32_t i = 0; i < joints.joints.size(); ++i) {
         const Joint& joint = joints.joints[i];

@@ -19,7 +19,7 @@ bool HasMoved(const ReportedBody& before, const ReportedBody& now) {
     return before.position != now.position || a.x != b.x || a.y != b.y || a.z != b.z || a.w != b.w;
 }
 
-void SetBit(std::vector<uint64_t>& words, uint32_t body) { words[body / 64] |= uint64_t{1} << body % 64; }
+void SetBit(Array<uint64_t>& words, uint32_t body) { words[body / 64] |= uint64_t{1} << body % 64; }
 
 // Calls visit(body) for the bits of a word, ascending.
 template <class Visit>
@@ -27,14 +27,14 @@ void VisitBits(uint64_t word, uint32_t firstBody, Visit&& visit) {
     for (; word != 0; word &= word - 1) visit(firstBody + static_cast<uint32_t>(std::countr_zero(word)));
 }
 
-void ListBits(const BodyStore& bodies, std::span<const uint64_t> words, std::vector<BodyId>& ids) {
+void ListBits(const BodyStore& bodies, std::span<const uint64_t> words, Array<BodyId>& ids) {
     for (uint32_t w = 0; w < words.size(); ++w)
         VisitBits(words[w], 64 * w, [&](uint32_t body) { ids.push_back(bodies.IdOf(body)); });
 }
 
 // Lists the bodies that woke or fell asleep; all of them may have moved, and new awake bodies have.
 void ListChanges(BodyStore& bodies, EventBuffers& buffers) {
-    std::vector<uint32_t>& changes = bodies.sleepChanges;
+    Array<uint32_t>& changes = bodies.sleepChanges;
     std::sort(changes.begin(), changes.end());
     changes.erase(std::unique(changes.begin(), changes.end()), changes.end());
     for (const uint32_t body : changes) {

@@ -8,7 +8,7 @@ namespace fulcrum {
 
 // Serial, in the order of the joints.
 void BreakJoints(const BodyStore& bodies, ColliderStore& colliders, JointStore& joints, ConstraintColoring& coloring,
-                 std::vector<BrokenJoint>& broken) {
+                 Array<BrokenJoint>& broken) {
     joints.breakable.Visit([&](uint32_t index) {
         Joint& joint = joints.joints[index];
         if (joint.color.color == 0xFF) return;

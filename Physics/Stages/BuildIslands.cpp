@@ -25,7 +25,7 @@ using Kind = ConstraintColoring::Kind;
 
 // The contents are rewritten. Room for an eighth more: resize would double it.
 template <class T>
-void ResizeTo(std::vector<T>& list, size_t count) {
+void ResizeTo(Array<T>& list, size_t count) {
     if (count > list.capacity()) {
         list.clear();
         list.reserve(count + count / 8);
@@ -54,7 +54,7 @@ BatchRange MakeRange(uint32_t first, uint32_t contacts, uint32_t& batches) {
 
 // Reserves a sixteenth more than needed: resize would double the largest buffers of a step. The contents are rewritten.
 template <class Batch>
-void GrowTo(std::vector<Batch>& batches, uint32_t count) {
+void GrowTo(Array<Batch>& batches, uint32_t count) {
     if (batches.size() >= count) return;
     batches.clear();
     batches.reserve(count + count / 16 + 1);
@@ -99,7 +99,7 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
         layout.groups[g].colorsEnd = static_cast<uint32_t>(layout.colors.size());
     }
     layout.colorCount = static_cast<uint32_t>(std::popcount(used));
-    const auto sort = [&](Kind kind, std::span<uint32_t> next, std::vector<Entry>& sorted) {
+    const auto sort = [&](Kind kind, std::span<uint32_t> next, Array<Entry>& sorted) {
         ResizeTo(sorted, ExclusivePrefixSum(next));
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
             if (c < kColors) sorted[next[keyOf(c, entry)]++] = entry;
@@ -113,7 +113,7 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
 template <class Visit>
 void VisitContacts(const SolverLayout& layout, const SolverGroup& group, Visit&& visit) {
     for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
-        const auto visitRange = [&](const std::vector<Entry>& contacts, const BatchRange& range) {
+        const auto visitRange = [&](const Array<Entry>& contacts, const BatchRange& range) {
             for (uint32_t i = 0; i < range.contacts; ++i) visit(contacts[range.first + i]);
         };
         visitRange(layout.moving.contacts, layout.colors[c].of[kMovingContacts]);
@@ -206,8 +206,10 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
         for (auto& group : groups)
             if (group.stiffness < group.wantedStiffness) ++group.stiffness;
     };
-    stiffen(layout.groups);
-    stiffen(saved.groups);
+    if (step.number % StepsFor(1, step) == 0) {
+        stiffen(layout.groups);
+        stiffen(saved.groups);
+    }
     if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion) return;
     layout.version = coloring.Version();
     layout.loadVersion = pairs.loadVersion;

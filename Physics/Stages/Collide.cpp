@@ -25,58 +25,6 @@ bool Overlap(const ColliderStore& colliders, const Pair& pair) {
     return colliders.colliders[pair.colliderA].fat.Overlaps(colliders.colliders[pair.colliderB].fat);
 }
 
-// Whether the bounding spheres of two bodies are farther apart than `distance`.
-bool BallsApart(const CollideStores& stores, const Pair& pair, float distance) {
-    const Vector3 between = (stores.bodies.CenterOf(pair.bodyB) - stores.bodies.CenterOf(pair.bodyA)).cast<float>();
-    const float reach = pair.shapeA->OuterRadius() + pair.shapeB->OuterRadius() + distance;
-    return LengthSquared(between) > reach * reach;
-}
-
-// m: how much closer the bounding spheres of two pieces may get within the step, also if one of them is stopped at its
-// start.
-float ClosingMotion(const CollideStores& stores, const Pair& pair) {
-    const BodyStore& bodies = stores.bodies;
-    Vector3 vA = bodies.LinearVelocityOf(pair.bodyA), vB = bodies.LinearVelocityOf(pair.bodyB);
-    if (pair.offset) {
-        const auto ofArm = [&](uint32_t body, uint32_t collider) {
-            return Cross<float>(
-                bodies.AngularVelocityOf(body),
-                Rotate(bodies.RotationOf(body), LocalOf(stores.bodies, stores.colliders, collider).position));
-        };
-        vA += ofArm(pair.bodyA, pair.colliderA);
-        vB += ofArm(pair.bodyB, pair.colliderB);
-    }
-    float fastest = std::max(LengthSquared(Vector3(vB - vA)), LengthSquared(vB));
-    if (!pair.fixedB) fastest = std::max(fastest, LengthSquared(vA));
-    return stores.step.dt * Sqrt(fastest);
-}
-
-// m: how much farther two pieces may extend by rotating within the step; convex ones at most to their bounding spheres.
-// For a rotating surface, the part near the other piece counts.
-float TurningMotion(const CollideStores& stores, const Pair& pair) {
-    const auto angleOf = [&](uint32_t body) { return stores.step.dt * Length(stores.bodies.AngularVelocityOf(body)); };
-    const auto ofConvex = [&](uint32_t body, const Shape& shape) {
-        const float outer = shape.OuterRadius();
-        return std::min(angleOf(body) * outer, outer - shape.InnerRadius());
-    };
-    const float ofA = ofConvex(pair.bodyA, *pair.shapeA);
-    if (pair.shapeB->IsConvex()) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
-    const float angle = angleOf(pair.bodyB);
-    if (!(angle > 0)) return ofA;
-    const Vector3 between = (stores.bodies.CenterOf(pair.bodyB) - stores.bodies.CenterOf(pair.bodyA)).cast<float>();
-    return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
-}
-
-// m: contacts farther away than this are left to the Continuous stage.
-float MotionBeforeCast(const CollideStores& stores, const Pair& pair) {
-    float motion = std::numeric_limits<float>::infinity();
-    if (stores.bodies.dynamics[pair.bodyA].continuous)
-        motion = FreeMotion(pair.shapeA->InnerRadius(), pair.shapeA->OuterRadius());
-    if (stores.bodies.dynamics[pair.bodyB].continuous)
-        motion = std::min(motion, FreeMotion(pair.shapeB->InnerRadius(), pair.shapeB->OuterRadius()));
-    return motion;
-}
-
 // Records the contact of a pair that has none, if it has points: it gets its place after the loop.
 void MakeContact(const CollideStores& stores, const PairView& view, uint32_t index, const Manifold& manifold,
                  WorkerFindings& findings) {
@@ -108,31 +56,16 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(stores.colliders, pair))
         return PairChange::Dead;
 
-    const float closing = FarEndFactor(stores.coloring, pair) * ClosingMotion(stores, pair);
-    const float mostMotion =
-        stores.bodies.continuousCount > 0 ? MotionBeforeCast(stores, pair) : std::numeric_limits<float>::infinity();
-    const auto reachOf = [&](float motion) {
-        return SpeculativeDistance(stores.step.settings, pair) + std::min(motion, mostMotion);
-    };
-    if (pair.contact == PairStore::kNone && !pair.offset && BallsApart(stores, pair, reachOf(closing)))
-        return PairChange::None;
-    const float reachAhead = reachOf(closing + TurningMotion(stores, pair));
+    const PairReach reach(stores, pair);
+    if (pair.contact == PairStore::kNone && !pair.offset && reach.AreFarApart(stores, pair)) return PairChange::None;
+    const float reachAhead = reach.WithRotation(stores, pair);
     if (pair.surface) return CollideWithSurface(stores, changes, index, reachAhead, findings);
-    const PairView view = ViewPair(stores.bodies, stores.colliders, stores.pairs, index);
+    const PairView view = ViewPair(stores, index);
     if (pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact])) {
         ++findings.kept;
     } else {
-        CollideSettings settings;
-        settings.method = stores.step.settings.narrowPhase;
-        settings.speculativeDistance = reachAhead;
         Manifold manifold;
-        if (pair.shapeB->Type() == ShapeType::Plane)
-            Collide(*pair.shapeA, static_cast<const Plane&>(*pair.shapeB), view.bInA, settings, pair.cache, manifold,
-                    findings.libccd);
-        else
-            Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB),
-                    WithDistinctCenters(stores.bodies, stores.colliders, pair, view.bInA), settings, pair.cache,
-                    manifold, findings.libccd);
+        FindManifold(stores, view, reachAhead, manifold, findings);
         if (pair.contact == PairStore::kNone) {
             if (manifold.pointCount > 0) MakeContact(stores, view, index, manifold, findings);
             return PairChange::None;
@@ -158,7 +91,7 @@ FULCRUM_FORCE_INLINE void PrefetchAhead(const CollideStores& stores, uint32_t in
     PrefetchLines(&stores.pairs.records[pair.contact], sizeof(ContactRecord));
 }
 
-void CollideAllActive(const CollideStores& stores, std::vector<PairChange>& changes, const StepWorkers& workers) {
+void CollideAllActive(const CollideStores& stores, Array<PairChange>& changes, const StepWorkers& workers) {
     const IndexSet& active = stores.pairs.active;
     changes.resize(stores.pairs.pairs.size(), PairChange::None);
     workers.jobs.ParallelFor(active.WordCount(), 1, [&](JobRange range) {
@@ -171,7 +104,7 @@ void CollideAllActive(const CollideStores& stores, std::vector<PairChange>& chan
     });
 }
 
-void CollideListed(const CollideStores& stores, std::span<const uint32_t> list, std::vector<PairChange>& changes,
+void CollideListed(const CollideStores& stores, std::span<const uint32_t> list, Array<PairChange>& changes,
                    const StepWorkers& workers) {
     changes.resize(stores.pairs.pairs.size(), PairChange::None);
     workers.jobs.ParallelFor(static_cast<uint32_t>(list.size()), 16, [&](JobRange range) {

@@ -40,7 +40,7 @@ void Write(const CollideStores& stores, const PairView& view, uint32_t index, co
 Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
     const BodyStore& bodies = stores.bodies;
     const uint32_t a = view.pair.bodyA, b = view.pair.bodyB;
-    const Quaternion rotation = bodies.RotationOf(a);
+    const Quaternion rotation = stores.RotationOf(a);
     Vector3 arm = Vector3::Zero();
     Quaternion toPiece{};
     if (view.pair.offset) {
@@ -54,14 +54,17 @@ Vector3 MotionInA(const CollideStores& stores, const PairView& view) {
     return Rotate(toPiece, InverseRotate(rotation, Vector3(velocity * stores.step.dt)));
 }
 
+}  // namespace
+
 // Assigns each manifold to the slot with matching features, then the rest to free slots.
-void WriteManifolds(const CollideStores& stores, const PairView& view, uint32_t first, WorkerFindings& findings) {
+void WriteSurfaceManifolds(const CollideStores& stores, const PairView& view, uint32_t first, bool writesEmpty,
+                           WorkerFindings& findings) {
     constexpr uint32_t kTaken = ~0u;
-    std::vector<uint32_t>& places = findings.surfacePlaces;
+    Array<uint32_t>& places = findings.surfacePlaces;
     places.clear();
     VisitManifolds(stores.pairs, first, [&](uint32_t index) { places.push_back(index); });
     const std::span<const SurfaceManifold> found = findings.surface.Manifolds();
-    std::vector<uint32_t>& left = findings.surfaceLeft;
+    Array<uint32_t>& left = findings.surfaceLeft;
     left.clear();
     for (uint32_t m = 0; m < found.size(); ++m) {
         int most = 0;
@@ -81,43 +84,46 @@ void WriteManifolds(const CollideStores& stores, const PairView& view, uint32_t 
         places[best] = kTaken;
     }
     size_t next = 0;
-    for (uint32_t m : left) {
+    std::erase_if(left, [&](uint32_t m) {
         while (next < places.size() && places[next] == kTaken) ++next;
-        if (next == places.size()) {
-            findings.more.push_back({first, m, found[m]});
-            continue;
-        }
+        if (next == places.size()) return false;
         Write(stores, view, places[next], found[m]);
         places[next] = kTaken;
-    }
+        return true;
+    });
     for (uint32_t place : places)
-        if (place != kTaken) stores.pairs.pairs[place].pointCount = 0;
+        if (writesEmpty && place != kTaken) stores.pairs.pairs[place].pointCount = 0;
 }
 
-}  // namespace
+void FindSurfaceManifolds(const CollideStores& stores, const PairView& view, uint32_t first, float reach,
+                          WorkerFindings& findings) {
+    CollideSettings settings;
+    settings.speculativeDistance = reach;
+    settings.method = stores.step.settings.narrowPhase;
+    Array<uint32_t>& touched = findings.surfaceTouched;
+    touched.clear();
+    VisitManifolds(stores.pairs, first, [&](uint32_t index) {
+        const Pair& pair = stores.pairs.pairs[index];
+        if (pair.pointCount > 0) touched.push_back(stores.pairs.contacts[pair.contact].triangle);
+    });
+    CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings,
+                   {MotionInA(stores, view), touched}, findings.surface);
+    findings.libccd += findings.surface.Counters();
+}
 
 PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange> changes, uint32_t first, float reach,
                               WorkerFindings& findings) {
     bool touches = false;
     VisitManifolds(stores.pairs, first, [&](uint32_t index) { touches |= stores.pairs.pairs[index].pointCount > 0; });
-    const PairView view = ViewPair(stores.bodies, stores.colliders, stores.pairs, first);
-    std::vector<PairContact>& contacts = stores.pairs.contacts;
+    const PairView view = ViewPair(stores, first);
+    Array<PairContact>& contacts = stores.pairs.contacts;
     if (touches && HardlyMoved(view, contacts[view.pair.contact])) {
         ++findings.kept;
     } else {
-        CollideSettings settings;
-        settings.speculativeDistance = reach;
-        settings.method = stores.step.settings.narrowPhase;
-        std::vector<uint32_t>& touched = findings.surfaceTouched;
-        touched.clear();
-        VisitManifolds(stores.pairs, first, [&](uint32_t index) {
-            const Pair& pair = stores.pairs.pairs[index];
-            if (pair.pointCount > 0) touched.push_back(contacts[pair.contact].triangle);
-        });
-        CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings,
-                       {MotionInA(stores, view), touched}, findings.surface);
-        findings.libccd += findings.surface.Counters();
-        WriteManifolds(stores, view, first, findings);
+        FindSurfaceManifolds(stores, view, first, reach, findings);
+        WriteSurfaceManifolds(stores, view, first, true, findings);
+        for (const uint32_t m : findings.surfaceLeft)
+            findings.more.push_back({first, m, findings.surface.Manifolds()[m]});
         VisitManifolds(stores.pairs, first,
                        [&](uint32_t index) { contacts[stores.pairs.pairs[index].contact].reference = view.bInA; });
     }
@@ -136,7 +142,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
 }
 
 void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::span<WorkerFindings> workers) {
-    std::vector<MoreManifold>& all = updates.moreManifolds;
+    Array<MoreManifold>& all = updates.moreManifolds;
     all.clear();
     for (WorkerFindings& findings : workers) {
         all.insert(all.end(), findings.more.begin(), findings.more.end());
@@ -149,7 +155,7 @@ void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::sp
     for (const MoreManifold& more : all) {
         const uint32_t index = stores.pairs.AddMore(more.pair);
         updates.changes.resize(std::max(updates.changes.size(), stores.pairs.pairs.size()), PairChange::None);
-        Write(stores, ViewPair(stores.bodies, stores.colliders, stores.pairs, more.pair), index, more.contact);
+        Write(stores, ViewPair(stores, more.pair), index, more.contact);
         updates.changes[index] = NoteTouching(stores, index, workers.front());
         if (TouchesSleepingBody(stores.bodies, stores.pairs.pairs[index]))
             updates.changes[more.pair] = PairChange::WakesOther;

@@ -10,7 +10,7 @@
 namespace fulcrum {
 
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
-           std::vector<uint32_t>& began) {
+           Array<uint32_t>& began) {
     coloring.ReserveBodies(bodyCount);
     began.reserve(pairs.contacts.capacity());  // so that steps in steady state do not allocate
     began.clear();

@@ -10,8 +10,6 @@ namespace fulcrum {
 namespace {
 
 constexpr uint32_t kMostLevel = 31;
-// A load must persist for this many steps; shorter ones are impacts, or piles that come to rest.
-constexpr int kStepsOfLoad = 8;
 // Safety factor of weights. With N substeps of P iterations, a load of r times its support's mass comes to rest if N^2
 // P > 2 r, approximately; the allowed penetration of a cube of 1 m alone would give 1.5 r. The rest limits the rebound
 // when such a load is removed to 1 mm for loads of up to 200 times.
@@ -23,13 +21,15 @@ uint32_t LevelOf(float x) {
     return std::min((std::bit_cast<uint32_t>(x) >> 23) - 126, kMostLevel);
 }
 
-// Filters the level of this step over time and returns the persistent level. isSure: accept it at once.
-uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, bool forgets) {
-    load.steps = level > load.level ? static_cast<uint8_t>(load.steps + 1) : uint8_t(0);
-    const bool lasts = load.steps >= kStepsOfLoad || (isSure && level > load.level);
+// Filters the level of this step over time and returns the persistent level. isSure: accept it at once. scale:
+// SinkScale or GapScale.
+template <class Scale>
+uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, const Scale& scale) {
+    load.steps = level > load.level ? static_cast<uint8_t>(std::min(load.steps + 1, 255)) : uint8_t(0);
+    const bool lasts = load.steps >= scale.stepsOfLoad || (isSure && level > load.level);
     const uint32_t lasting = isSure ? level : std::min<uint32_t>(level, load.recent);
     load.recent = static_cast<uint8_t>(level);
-    if (!lasts && !(forgets && lasting + 1 < load.level)) return load.level;
+    if (!lasts && !(scale.forgets && lasting + 1 < load.level)) return load.level;
     load.steps = 0;
     return static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
 }
@@ -83,7 +83,7 @@ bool NoteSquaredGaps(const Batch& batch, const Real& squared, const GapScale& sc
         if (!(noted >> lane & 1u)) continue;
         LoadLevel& gap = joints.gaps[batch.joint[lane]];
         gap.stiffness = scale.stiffness;
-        const uint8_t level = NextLevel(gap, LevelOf(part[lane]), false, scale.forgets);
+        const uint8_t level = NextLevel(gap, LevelOf(part[lane]), false, scale);
         changed |= level != gap.level;
         gap.level = level;
     }
@@ -197,7 +197,7 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
         if (!(loaded >> lane & 1u)) continue;
         LoadLevel& load = pairs.loads[pairs.contacts[batch.contact[lane]].pair];
         load.stiffness = scale.stiffness;
-        const uint8_t level = NextLevel(load, LevelOf(part[lane]), unseen[lane], scale.forgets);
+        const uint8_t level = NextLevel(load, LevelOf(part[lane]), unseen[lane], scale);
         if (level == load.level || IsLeftOut(bodies, joints, pairs.PairOf(batch.contact[lane]))) continue;
         load.level = level;
         changed = true;

@@ -29,9 +29,13 @@ struct SinkScale {
     float softness;    // s^2: 1 / w^2 for the system's substeps
     float depthScale;  // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
     Vector3 gravity;   // m/s2
-    uint8_t stiffness;  // see LoadLevel
-    bool forgets;       // levels may decrease: only in few steps, so that efforts do not alternate
+    uint8_t stiffness;    // see LoadLevel
+    uint8_t stepsOfLoad;  // see StepsOfLoad
+    bool forgets;         // levels may decrease: only in few steps, so that efforts do not alternate
 };
+
+// A load must persist for this many steps; shorter ones are impacts, or piles that come to rest.
+inline uint8_t StepsOfLoad(const StepContext& step) { return static_cast<uint8_t>(StepsFor(8, step)); }
 
 // s^2: SinkScale::softness, computed once per step (StepContext).
 inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
@@ -42,11 +46,12 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
 // Levels of joint errors assume that the gap is proportional to the square of the substep; if it is not, the efforts
 // converge in a few rounds.
 struct GapScale {
-    float target;        // m: AccuracyTarget::jointError
-    float drift;         // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
-    float impulseScale;  // substep of the batch / that of the system's settings
-    uint8_t stiffness;   // see LoadLevel
-    bool forgets;        // as SinkScale::forgets
+    float target;         // m: AccuracyTarget::jointError
+    float drift;          // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
+    float impulseScale;   // substep of the batch / that of the system's settings
+    uint8_t stiffness;    // see LoadLevel
+    uint8_t stepsOfLoad;  // as SinkScale::stepsOfLoad
+    bool forgets;         // as SinkScale::forgets
 
     // 1/m: a gap in the batch's substeps times this is 1 where the system's leave LargestUnnoted.
     float PerLevel(float itsTarget) const { return 1 / (LargestUnnoted(itsTarget) * impulseScale * impulseScale); }

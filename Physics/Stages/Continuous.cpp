@@ -70,7 +70,7 @@ void LookAtBody(const CollisionView& view, const ConstraintColoring& coloring, S
 // Colliders that the solver moved out of their fat bounds get bounds that contain the whole path, so that tree searches
 // find them.
 void EnlargeBounds(const BodyStore& bodies, ColliderStore& colliders, std::span<WorkerFindings> workers) {
-    std::vector<uint32_t>& moved = colliders.moved;
+    Array<uint32_t>& moved = colliders.moved;
     const size_t first = moved.size();
     for (WorkerFindings& findings : workers) {
         for (uint32_t collider : findings.outsideFatBounds) {
@@ -89,7 +89,7 @@ uint32_t FindFast(const CollisionView& view, const PairStore& pairs, const Const
                   ColliderStore& colliders, SweepStore& sweeps, const StepWorkers& workers) {
     using SearchBy = SweepStore::SearchBy;
     sweeps.searchBy.assign(view.bodies.Size(), SearchBy::None);
-    const std::vector<uint32_t>& awake = view.bodies.awake;
+    const Array<uint32_t>& awake = view.bodies.awake;
     workers.jobs.ParallelFor(static_cast<uint32_t>(awake.size()), 64, [&](JobRange range) {
         for (uint32_t k = range.begin; k < range.end; ++k)
             LookAtBody(view, coloring, sweeps, awake[k], workers.findings[range.worker]);
@@ -142,7 +142,7 @@ void CastActive(const CollisionView& view, const SweepStore& sweeps, const StepW
 }
 
 // Appends the workers' hits to those that wait.
-void GatherHits(std::span<WorkerFindings> workers, std::vector<SweepHit>& hits) {
+void GatherHits(std::span<WorkerFindings> workers, Array<SweepHit>& hits) {
     for (WorkerFindings& findings : workers) {
         hits.insert(hits.end(), findings.sweepHits.begin(), findings.sweepHits.end());
         findings.sweepHits.clear();
@@ -155,8 +155,8 @@ void ReserveLists(const BodyStore& bodies, size_t colliders, SweepStore& sweeps,
     sweeps.searchBy.reserve(bodies.Size());
     sweeps.places.resize(bodies.Size(), SweepStore::kNone);
     sweeps.swept.reserve(users);
-    for (std::vector<SweepHit>* list : {&sweeps.hits, &sweeps.keptHits}) list->reserve(2 * users);
-    for (std::vector<uint32_t>* list : {&sweeps.active, &sweeps.next}) list->reserve(2 * users);
+    for (Array<SweepHit>* list : {&sweeps.hits, &sweeps.keptHits}) list->reserve(2 * users);
+    for (Array<uint32_t>* list : {&sweeps.active, &sweeps.next}) list->reserve(2 * users);
     for (WorkerFindings& findings : workers) {
         findings.sweepHits.reserve(users);
         findings.outsideFatBounds.reserve(colliders);

@@ -35,28 +35,27 @@ bool MovesFreely(const BodyStore& bodies, uint32_t body) {
 
 // Filters `bodies` by isSo(body) on all workers, preserving order.
 template <class Test>
-std::vector<uint32_t> SelectBodies(const StepWorkers& workers, std::span<const uint32_t> bodies, const Test& isSo) {
+Array<uint32_t> SelectBodies(const StepWorkers& workers, std::span<const uint32_t> bodies, const Test& isSo) {
     const std::span<uint8_t> is = workers.scratch.Allocate<uint8_t>(bodies.size());
     workers.jobs.ParallelFor(static_cast<uint32_t>(bodies.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) is[i] = isSo(bodies[i]);
     });
-    std::vector<uint32_t> selected;
+    Array<uint32_t> selected;
     for (size_t i = 0; i < bodies.size(); ++i)
         if (is[i]) selected.push_back(bodies[i]);
     return selected;
 }
 
 // Marks the `candidates` that are to disperse, and returns them in ascending order. view: refers to `bodies`.
-std::vector<uint32_t> MarkDispersing(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups,
-                                     std::span<const uint32_t> candidates, BodyStore& bodies,
-                                     const StepWorkers& workers) {
+Array<uint32_t> MarkDispersing(const CollisionView& view, const PairStore& pairs, const JointedGroups& groups,
+                               std::span<const uint32_t> candidates, BodyStore& bodies, const StepWorkers& workers) {
     const auto mayStart = [&](uint32_t body) { return MovesFreely(bodies, body) && !bodies.dynamics[body].dispersing; };
-    std::vector<uint32_t> starting = SelectBodies(workers, candidates, [&](uint32_t body) {
+    Array<uint32_t> starting = SelectBodies(workers, candidates, [&](uint32_t body) {
         return mayStart(body) && OverlapsManyDeeply(view, pairs, groups, body);
     });
     for (const uint32_t body : starting) bodies.dynamics[body].dispersing = true;
     // Also includes bodies that deeply overlap only a few of these, since they would be in the way.
-    for (std::vector<uint32_t> joining = starting; !joining.empty();) {
+    for (Array<uint32_t> joining = starting; !joining.empty();) {
         joining = SelectBodies(workers, candidates, [&](uint32_t body) {
             return mayStart(body) && OverlapsDispersingDeeply(view, pairs, groups, body);
         });
@@ -77,10 +76,10 @@ void RemoveDynamicPairs(const CollisionView& view, std::span<const uint32_t> bod
 }
 
 // Computes where each body moves. Jointed bodies move in one direction with those connected to them.
-std::vector<DispersingBody> PlanDispersing(const CollisionView& view, const JointedGroups& groups,
-                                           std::span<const uint32_t> bodies) {
-    std::vector<DispersingBody> planned;
-    std::vector<uint32_t> single;
+Array<DispersingBody> PlanDispersing(const CollisionView& view, const JointedGroups& groups,
+                                     std::span<const uint32_t> bodies) {
+    Array<DispersingBody> planned;
+    Array<uint32_t> single;
     for (const uint32_t body : bodies) {
         if (view.joints.HasAny(body)) planned.push_back({body, PointInBall(groups.RootOf(body))});
         else single.push_back(body);
@@ -99,7 +98,7 @@ void AddGravity(const SystemSettings& settings, BodyStore& bodies, uint32_t body
 }
 
 // Drops bodies that were removed, put to sleep, frozen or made kinematic meanwhile.
-void ForgetStopped(BodyStore& bodies, std::vector<DispersingBody>& all) {
+void ForgetStopped(BodyStore& bodies, Array<DispersingBody>& all) {
     std::erase_if(all, [&](const DispersingBody& dispersing) {
         BodyDynamics& d = bodies.dynamics[dispersing.body];
         d.dispersing &= MovesFreely(bodies, dispersing.body);
@@ -143,12 +142,12 @@ struct StartedTogether {
     bool isBlocked = false;  // one of them overlaps many others
     bool HaveRoom() const { return !isBlocked && overlapping * kNearlyAll <= count; }
 };
+using ByStart = std::map<uint64_t, StartedTogether, std::less<>, Allocator<std::pair<const uint64_t, StartedTogether>>>;
 
 // Groups bodies by the step in which they started; overlaps[i]: whether all[i] overlaps another body.
-std::map<uint64_t, StartedTogether> GroupByStart(const CollisionView& view, const PairStore& pairs,
-                                                 std::span<const DispersingBody> all, const JointedGroups& groups,
-                                                 std::span<const uint8_t> overlaps) {
-    std::map<uint64_t, StartedTogether> byStart;
+ByStart GroupByStart(const CollisionView& view, const PairStore& pairs, std::span<const DispersingBody> all,
+                     const JointedGroups& groups, std::span<const uint8_t> overlaps) {
+    ByStart byStart;
     for (size_t i = 0; i < overlaps.size(); ++i) {
         StartedTogether& together = byStart[all[i].startStep];
         ++together.count;
@@ -167,15 +166,15 @@ void StartDispersing(const StepContext& step, const ColliderStore& colliders, co
                      BodyStore& bodies, PairStore& pairs, ConstraintColoring& coloring, CrowdState& crowd,
                      std::span<PairChange> changes, const StepWorkers& workers) {
     const CollisionView view{step, bodies, colliders, joints};
-    std::vector<uint32_t>& candidates = crowd.deepOverlaps;
+    Array<uint32_t>& candidates = crowd.deepOverlaps;
     std::sort(candidates.begin(), candidates.end());
     candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
     const JointedGroups groups(bodies.Size(), joints, workers.scratch);
-    const std::vector<uint32_t> starting = MarkDispersing(view, pairs, groups, candidates, bodies, workers);
+    const Array<uint32_t> starting = MarkDispersing(view, pairs, groups, candidates, bodies, workers);
     candidates.clear();
     if (starting.empty()) return;
     RemoveDynamicPairs(view, starting, pairs, coloring, changes);
-    std::vector<DispersingBody>& all = crowd.dispersing;
+    Array<DispersingBody>& all = crowd.dispersing;
     for (DispersingBody dispersing : PlanDispersing(view, groups, starting)) {
         BodyDynamics& d = bodies.dynamics[dispersing.body];
         d.dispersing = true;
@@ -189,7 +188,7 @@ void StartDispersing(const StepContext& step, const ColliderStore& colliders, co
 }
 
 void PushDispersing(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, BodyStore& bodies,
-                    std::vector<DispersingBody>& all, JobSystem& jobs) {
+                    Array<DispersingBody>& all, JobSystem& jobs) {
     if (all.empty()) return;
     ForgetStopped(bodies, all);
     jobs.ParallelFor(static_cast<uint32_t>(all.size()), 64, [&](JobRange range) {
@@ -213,7 +212,7 @@ Vector3 OwnVelocity(const BodyStore& bodies, std::span<const DispersingBody> all
 // Bodies that started together end together. A body whose waiting time is over ends by itself once it overlaps no
 // other.
 void EndDispersing(const StepContext& step, const JointStore& joints, const PairStore& pairs, BodyStore& bodies,
-                   ColliderStore& colliders, std::vector<DispersingBody>& all, const StepWorkers& workers) {
+                   ColliderStore& colliders, Array<DispersingBody>& all, const StepWorkers& workers) {
     if (all.empty()) return;
     const CollisionView view{step, bodies, colliders, joints};
     const JointedGroups groups(bodies.Size(), joints, workers.scratch);
@@ -222,7 +221,7 @@ void EndDispersing(const StepContext& step, const JointStore& joints, const Pair
         for (uint32_t i = range.begin; i < range.end; ++i)
             overlaps[i] = OverlapsAnother(view, pairs, groups, all[i].body);
     });
-    const std::map<uint64_t, StartedTogether> together = GroupByStart(view, pairs, all, groups, overlaps);
+    const ByStart together = GroupByStart(view, pairs, all, groups, overlaps);
     for (size_t i = 0; i < overlaps.size(); ++i) {
         const DispersingBody& dispersing = all[i];
         const bool hasDispersed =

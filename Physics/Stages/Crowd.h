@@ -25,7 +25,7 @@ void StartDispersing(const StepContext& step, const ColliderStore& colliders, co
 
 // At the start of the step, before bounds: sets the velocity with which dispersing bodies move in this step.
 void PushDispersing(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, BodyStore& bodies,
-                    std::vector<DispersingBody>& all, JobSystem& jobs);
+                    Array<DispersingBody>& all, JobSystem& jobs);
 // At the end of the step, for a dispersing body: its velocity v, m/s, without the dispersing velocity.
 // For different bodies from any number of threads.
 Vector3 OwnVelocity(const BodyStore& bodies, std::span<const DispersingBody> all, uint32_t body, const Vector3& v,
@@ -33,6 +33,6 @@ Vector3 OwnVelocity(const BodyStore& bodies, std::span<const DispersingBody> all
 
 // Removes bodies that have dispersed from `all`; they collide again and search for pairs.
 void EndDispersing(const StepContext& step, const JointStore& joints, const PairStore& pairs, BodyStore& bodies,
-                   ColliderStore& colliders, std::vector<DispersingBody>& all, const StepWorkers& workers);
+                   ColliderStore& colliders, Array<DispersingBody>& all, const StepWorkers& workers);
 
 }  // namespace fulcrum

@@ -50,8 +50,7 @@ DeepestPoint DeepestPointOf(const BodyStore& bodies, const PairStore& pairs, uin
 }
 
 // Merges the workers' lists into one, sorted, independent of the number of threads.
-void Gather(std::span<WorkerFindings> workers, std::vector<uint32_t> WorkerFindings::*list,
-            std::vector<uint32_t>& all) {
+void Gather(std::span<WorkerFindings> workers, Array<uint32_t> WorkerFindings::*list, Array<uint32_t>& all) {
     all.clear();
     for (WorkerFindings& findings : workers) {
         all.insert(all.end(), (findings.*list).begin(), (findings.*list).end());

@@ -68,8 +68,8 @@ bool FindLimit(const CollisionView& view, uint32_t body, const Ball& ball, const
 }
 
 // Finds floors and walls in 26 directions.
-std::vector<PlaceLimit> FindLimits(const CollisionView& view, uint32_t body, const Ball& ball) {
-    std::vector<PlaceLimit> limits;
+Array<PlaceLimit> FindLimits(const CollisionView& view, uint32_t body, const Ball& ball) {
+    Array<PlaceLimit> limits;
     for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
             for (int z = -1; z <= 1; ++z) {
@@ -84,7 +84,7 @@ std::vector<PlaceLimit> FindLimits(const CollisionView& view, uint32_t body, con
 
 // m: the outer radius that only one body in kLargeOnes exceeds.
 float NearlyLargestRadius(const CollisionView& view, std::span<const uint32_t> bodies) {
-    std::vector<float> radii;
+    Array<float> radii;
     for (const uint32_t body : bodies) radii.push_back(view.bodies.dynamics[body].outerRadius);
     const auto large = radii.end() - 1 - static_cast<ptrdiff_t>(radii.size() / kLargeOnes);
     std::nth_element(radii.begin(), large, radii.end());
@@ -127,7 +127,7 @@ Vector3 PointInBall(uint32_t body) {
 }
 
 // Points of a face-centered cubic lattice (integers with an even sum) nearest to the center of one of its cubes.
-std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits) {
+Array<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits) {
     struct Point {
         int32_t square, x, y, z;  // twice the point relative to that center, and its squared length
         auto operator<=>(const Point&) const = default;
@@ -140,7 +140,7 @@ std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> li
         std::cbrt(2 * count / kUnitBall);  // radius in lattice units; the lattice has half a point per unit volume
     const int reach = static_cast<int>(limits.empty() ? whole : kFarthestPlace * whole) + 2;
     const float scale = static_cast<float>(1 / whole);
-    std::vector<Point> points;
+    Array<Point> points;
     for (int x = -reach; x <= reach; ++x)
         for (int y = -reach; y <= reach; ++y)
             for (int z = -reach + ((x + y + reach) & 1); z <= reach; z += 2) {
@@ -154,12 +154,12 @@ std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> li
             }
     if (points.size() < count) return {};
     std::sort(points.begin(), points.end());
-    std::vector<Vector3> places;
+    Array<Vector3> places;
     for (uint32_t i = 0; i < count; ++i) places.push_back(points[i].Place() * scale);
     return places;
 }
 
-void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::vector<DispersingBody>& dispersing) {
+void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, Array<DispersingBody>& dispersing) {
     const uint32_t count = static_cast<uint32_t>(bodies.size());
     const double margin = double{NearlyLargestRadius(view, bodies)}, radius = margin * std::cbrt(count / kPacking);
     Position middle = Position::Zero();
@@ -167,7 +167,7 @@ void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::ve
     const bool areNear = std::all_of(bodies.begin(), bodies.end(), [&](uint32_t body) {
         return (view.bodies.CenterOf(body) - middle).norm() < kNear * radius;
     });
-    std::vector<Vector3> places;
+    Array<Vector3> places;
     if (areNear) places = PlacesInBall(count, FindLimits(view, bodies[0], {middle, radius, margin}));
     if (places.empty()) places = PlacesInBall(count);
     MatchPlaces(view, bodies, places);

@@ -2,11 +2,11 @@
 // Used by StartDispersing; PointInBall also by contacts of coincident bodies. One thread.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Stages/CollisionView.h>
 #include <Fulcrum/Physics/Stages/StepState.h>
 
 #include <span>
-#include <vector>
 
 namespace fulcrum {
 
@@ -25,10 +25,10 @@ struct PlaceLimit {
 };
 // `count` points of a densest sphere packing in a ball about the origin, from the innermost to the outermost. The
 // ball's radius is 1 without limits, larger if limits cut off parts of it. Empty if they leave too little space.
-std::vector<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits = {});
+Array<Vector3> PlacesInBall(uint32_t count, std::span<const PlaceLimit> limits = {});
 
 // Adds an entry to `dispersing` for each of `bodies`, none of which has joints: its target position and travel time.
 // Bodies near one point get positions about their common center, others about their own position. Reorders `bodies`.
-void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, std::vector<DispersingBody>& dispersing);
+void AssignPlaces(const CollisionView& view, std::span<uint32_t> bodies, Array<DispersingBody>& dispersing);
 
 }  // namespace fulcrum

@@ -61,6 +61,15 @@ inline uint8_t StiffnessOf(int substeps, int systemSubsteps, float longer) {
     return stiffness;
 }
 
+// Loads and stiffness change over so many steps of 1/60 s, or longer steps, or over the same time in shorter ones: a
+// load that bounces on its springs would be pumped by springs that stiffen while it rises.
+inline uint32_t StepsFor(uint32_t steps, const StepContext& step) {
+    constexpr float kMost = 255;
+    const float dt = step.stiffnessDt * static_cast<float>(step.settings.solver.substeps);
+    return static_cast<uint32_t>(
+        std::clamp(static_cast<float>(steps) / (60 * dt) + 0.5f, static_cast<float>(steps), kMost));
+}
+
 // The part of the system's substep whose springs a group has. impulseScale: see Effort.
 inline float SpringsOf(const SolverGroup& group, float impulseScale) {
     return group.stiffness > 0 ? std::max(impulseScale, SubstepOfStiffness(group.stiffness)) : impulseScale;

@@ -2,6 +2,7 @@
 // but for the notes of pushes, which Solve takes on the worker that moves the body.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Stages/StepContext.h>
 #include <Fulcrum/Physics/Stages/SweepStore.h>
 #include <Fulcrum/Physics/StepReport.h>
@@ -10,7 +11,6 @@
 #include <Fulcrum/Physics/World/JointStore.h>
 
 #include <span>
-#include <vector>
 
 namespace fulcrum {
 
@@ -47,10 +47,10 @@ struct ErrorMeter {
         bool isHeld = false, isDriven = false;
     };
     // By body; empty where nobody asks.
-    std::vector<ErrorStart> starts;
-    std::vector<PushNote> pushes;
-    std::vector<uint32_t> parents;
-    std::vector<Island> islands;  // by root
+    Array<ErrorStart> starts;
+    Array<PushNote> pushes;
+    Array<uint32_t> parents;
+    Array<Island> islands;  // by root
 };
 
 inline size_t HeapBytes(const ErrorMeter& meter) {

@@ -2,11 +2,10 @@
 // events; the arrays are visible to the user until the next step.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
-
-#include <vector>
 
 namespace fulcrum {
 
@@ -42,16 +41,16 @@ inline bool AreReported(const IndexSet& reports, uint32_t bodyA, uint32_t bodyB)
 struct EventBuffers {
     StepEvents events;
 
-    std::vector<ListedContact> listed;
-    std::vector<ContactOrder> order;
-    std::vector<ContactEvent> contacts;
-    std::vector<ContactEvent::Manifold> manifolds;
+    Array<ListedContact> listed;
+    Array<ContactOrder> order;
+    Array<ContactEvent> contacts;
+    Array<ContactEvent::Manifold> manifolds;
 
-    std::vector<ReportedBody> bodies;              // by index; empty without EventSettings::bodies
-    std::vector<uint64_t> awakeWords, movedWords;  // one bit per body
-    std::vector<BodyId> awake, moved, woke, fellAsleep;
+    Array<ReportedBody> bodies;              // by index; empty without EventSettings::bodies
+    Array<uint64_t> awakeWords, movedWords;  // one bit per body
+    Array<BodyId> awake, moved, woke, fellAsleep;
 
-    std::vector<BrokenJoint> broken;
+    Array<BrokenJoint> broken;
 };
 
 inline size_t HeapBytes(const EventBuffers& buffers) {

@@ -101,12 +101,12 @@ bool LookAtPair(const ContactSources& from, uint32_t index, ReportedContact& rep
     return reported.kind != EventKind::Stay || from.settings.events.stays;
 }
 
-void ListActive(const ContactSources& from, std::span<ReportedContact> reported, std::vector<ListedContact>& listed,
+void ListActive(const ContactSources& from, std::span<ReportedContact> reported, Array<ListedContact>& listed,
                 const StepWorkers& workers) {
     const IndexSet& active = from.pairs.active;
     for (WorkerFindings& findings : workers.findings) findings.eventPairs.reserve(active.Size());
     workers.jobs.ParallelFor(active.WordCount(), 1, [&](JobRange range) {
-        std::vector<uint32_t>& found = workers.findings[range.worker].eventPairs;
+        Array<uint32_t>& found = workers.findings[range.worker].eventPairs;
         for (uint32_t word = range.begin; word < range.end; ++word)
             active.VisitWord(word, [&](uint32_t index) {
                 if (LookAtPair(from, index, reported[index])) found.push_back(index);
@@ -120,9 +120,9 @@ void ListActive(const ContactSources& from, std::span<ReportedContact> reported,
 }
 
 // Pairs of bodies that were separated while both slept do not become active again, so their end is detected here.
-void ListApart(const ContactSources& from, std::span<ReportedContact> reported, std::vector<ListedContact>& listed) {
+void ListApart(const ContactSources& from, std::span<ReportedContact> reported, Array<ListedContact>& listed) {
     const auto areNear = [&](const Pair& pair) {
-        const std::vector<Collider>& all = from.colliders.colliders;
+        const Array<Collider>& all = from.colliders.colliders;
         return all[pair.colliderA].fat.Overlaps(all[pair.colliderB].fat);
     };
     for (const uint32_t body : from.bodies.sleepChanges) {
@@ -137,7 +137,7 @@ void ListApart(const ContactSources& from, std::span<ReportedContact> reported, 
     }
 }
 
-void ListHits(const ContactSources& from, std::span<const ReportedHit> hits, std::vector<ListedContact>& listed) {
+void ListHits(const ContactSources& from, std::span<const ReportedHit> hits, Array<ListedContact>& listed) {
     for (uint32_t i = 0; i < hits.size(); ++i) {
         const ReportedHit& hit = hits[i];
         if (!AreReported(from.bodies.reportsContacts, hit.body, hit.other)) continue;
@@ -152,7 +152,7 @@ void ListHits(const ContactSources& from, std::span<const ReportedHit> hits, std
 }
 
 // Sorts events: by the indices of bodies, then by the full key.
-void Sort(std::span<const ListedContact> listed, std::vector<ContactOrder>& order) {
+void Sort(std::span<const ListedContact> listed, Array<ContactOrder>& order) {
     order.clear();
     for (uint32_t i = 0; i < listed.size(); ++i)
         order.push_back({uint64_t{listed[i].bodyA.index} << 32 | listed[i].bodyB.index, i});
@@ -167,7 +167,7 @@ void Sort(std::span<const ListedContact> listed, std::vector<ContactOrder>& orde
 
 // Assigns the manifolds' ranges to events; returns the number of manifolds. If a contact ended and began in the same
 // step, because its pair was recreated, it persists: one of the two events is dropped.
-uint32_t Place(bool keepsStays, std::span<ListedContact> listed, std::vector<ContactOrder>& order) {
+uint32_t Place(bool keepsStays, std::span<ListedContact> listed, Array<ContactOrder>& order) {
     const auto areSame = [](const ListedContact& a, const ListedContact& b) {
         return std::tie(a.bodyA, a.bodyB, a.childA, a.childB) == std::tie(b.bodyA, b.bodyB, b.childA, b.childB);
     };
@@ -266,7 +266,7 @@ void ListContactEvents(const StepContext& step, const BodyStore& bodies, const C
                        const StepWorkers& workers) {
     if (!step.settings.events.contacts) return;
     const ContactSources from{step.settings, bodies, colliders, pairs, solver.notes};
-    std::vector<ListedContact>& listed = buffers.listed;
+    Array<ListedContact>& listed = buffers.listed;
     listed.clear();
     ListActive(from, pairs.reported, listed, workers);
     ListApart(from, pairs.reported, listed);

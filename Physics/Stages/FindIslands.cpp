@@ -43,7 +43,7 @@ void SetEffort(SolverGroup& group, const IslandEffort& effort, const JointSubste
 }
 
 // By root; only efforts for which an island gets a group of its own.
-std::span<const IslandEffort> EffortsOf(const std::vector<SavedEffort>& saved, const BodyStore& bodies, UnionFind& sets,
+std::span<const IslandEffort> EffortsOf(const Array<SavedEffort>& saved, const BodyStore& bodies, UnionFind& sets,
                                         ScratchArena& scratch) {
     std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(bodies.awake.size());
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
@@ -52,8 +52,8 @@ std::span<const IslandEffort> EffortsOf(const std::vector<SavedEffort>& saved, c
     return efforts;
 }
 
-void SetEfforts(const std::vector<SavedEffort>& saved, const BodyStore& bodies, const Islands& islands,
-                std::vector<SolverGroup>& groups) {
+void SetEfforts(const Array<SavedEffort>& saved, const BodyStore& bodies, const Islands& islands,
+                Array<SolverGroup>& groups) {
     for (const SavedEffort& from : saved) {
         SolverGroup& group =
             groups[from.body == ~0u ? Islands::kLargeGroup : islands.groupOf[bodies.cold[from.body].awakePlace]];
@@ -68,7 +68,7 @@ void SetEfforts(const std::vector<SavedEffort>& saved, const BodyStore& bodies, 
 
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                     const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
-                    const std::vector<SavedEffort>* saved, std::vector<SolverGroup>& groups, ScratchArena& scratch) {
+                    const Array<SavedEffort>* saved, Array<SolverGroup>& groups, ScratchArena& scratch) {
     const auto placeOf = [&](uint32_t body) { return bodies.cold[body].awakePlace; };
     const size_t count = bodies.awake.size();
     UnionFind sets(scratch.Allocate<uint32_t>(count));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Stages/SavedEfforts.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/Stages/StepContext.h>
@@ -10,7 +11,6 @@
 #include <Fulcrum/Physics/World/PairStore.h>
 
 #include <span>
-#include <vector>
 
 namespace fulcrum {
 
@@ -26,7 +26,7 @@ struct Islands {
 // efforts, or null.
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                     const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
-                    const std::vector<SavedEffort>* saved, std::vector<SolverGroup>& groups, ScratchArena& scratch);
+                    const Array<SavedEffort>* saved, Array<SolverGroup>& groups, ScratchArena& scratch);
 
 // Calls visit(color, entry) for all constraints of a kind, those without a color last.
 template <class Visit>

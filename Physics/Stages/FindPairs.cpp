@@ -63,7 +63,7 @@ void Search(const CollisionView& view, const PairStore& pairs, uint32_t index, u
 }
 
 void SearchEach(const CollisionView& view, const PairStore& pairs, uint32_t mostDeep, const StepWorkers& workers) {
-    const std::vector<uint32_t>& moved = view.colliders.moved;
+    const Array<uint32_t>& moved = view.colliders.moved;
     workers.jobs.ParallelFor(static_cast<uint32_t>(moved.size()), 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             Search(view, pairs, moved[i], mostDeep, workers.findings[range.worker]);
@@ -160,7 +160,7 @@ void DescribePair(const BodyStore& bodies, const ColliderStore& colliders, PairS
 
 // Creates new pairs and activates resting ones, from sorted keys. Pairs with surfaces have contacts from the start.
 void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std::span<const uint64_t> keys,
-                   PairStore& pairs, std::vector<uint32_t>& activated, const StepWorkers& workers) {
+                   PairStore& pairs, Array<uint32_t>& activated, const StepWorkers& workers) {
     // Where many bodies have been added, all of their pairs are: the arrays move once.
     if (!pairs.HasRoomFor(keys.size()))
         pairs.Reserve(static_cast<size_t>(std::ranges::count_if(keys, [&](uint64_t key) {
@@ -212,7 +212,7 @@ void FindPairs(const StepContext& step, const JointStore& joints, BodyStore& bod
         SearchAll(view, pairs, crowd, kAnyNumber, workers);
         FoundTooDeep(workers.findings, kAnyNumber);
     }
-    std::vector<uint64_t>& found = updates.found;
+    Array<uint64_t>& found = updates.found;
     found.clear();
     for (WorkerFindings& findings : workers.findings) {
         found.insert(found.end(), findings.pairs.begin(), findings.pairs.end());
@@ -223,7 +223,7 @@ void FindPairs(const StepContext& step, const JointStore& joints, BodyStore& bod
 }
 
 void ForgetMoved(ColliderStore& colliders, SensorStore& sensors, JobSystem& jobs) {
-    const std::vector<uint32_t>& moved = colliders.moved;
+    const Array<uint32_t>& moved = colliders.moved;
     if (moved.empty()) return;
     jobs.ParallelFor(static_cast<uint32_t>(moved.size()), 256, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i) {

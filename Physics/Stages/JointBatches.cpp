@@ -103,7 +103,7 @@ Batch& NextBatch(BatchList<Batch>& list) {
 }
 
 template <int N>
-void ShareRows(std::span<JointBatch<N>> batches, std::vector<JointRows<N>>& rows) {
+void ShareRows(std::span<JointBatch<N>> batches, Array<JointRows<N>>& rows) {
     size_t count = 0;
     for (const JointBatch<N>& batch : batches) count += batch.rowRoom;
     if (rows.size() < count) rows.resize(count + count / 4);
@@ -155,8 +155,8 @@ void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_
 }
 
 void MakeOverflowJoints(const BodyStore& bodies, const JointStore& joints, const ConstraintColoring& coloring,
-                        std::vector<JointBatch<1>>& batches) {
-    const std::vector<Entry>& overflow = coloring.At(ConstraintColoring::kOverflow).Of(Kind::Joint);
+                        Array<JointBatch<1>>& batches) {
+    const Array<Entry>& overflow = coloring.At(ConstraintColoring::kOverflow).Of(Kind::Joint);
     batches.resize(overflow.size());
     for (size_t i = 0; i < batches.size(); ++i) {
         const SortedJoint joint{0, 0, overflow[i].constraint};

@@ -23,7 +23,7 @@ void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_
 
 // Batches of one lane for joints without a color.
 void MakeOverflowJoints(const BodyStore& bodies, const JointStore& joints, const ConstraintColoring& coloring,
-                        std::vector<JointBatch<1>>& batches);
+                        Array<JointBatch<1>>& batches);
 
 // Assigns every batch its range of rows.
 void ShareRows(SolverLayout& layout);

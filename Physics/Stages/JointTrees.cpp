@@ -18,7 +18,7 @@ constexpr float kMostSubsteps = 3;
 
 // A set of bodies connected by joints, and a spanning tree of the joints.
 struct Component {
-    std::vector<uint32_t> bodies;
+    std::span<const uint32_t> bodies;
     uint32_t root = kNone;
     bool anchored = false;       // some joint connects to an immovable body
     bool overridesMass = false;  // some joint overrides masses, which trees do not support
@@ -47,7 +47,8 @@ public:
           trees_(trees),
           scratch_(scratch),
           slotOf_(scratch.Allocate<uint32_t>(bodies.Size())),
-          seen_(scratch.Allocate<uint8_t>(bodies.Size())) {
+          seen_(scratch.Allocate<uint8_t>(bodies.Size())),
+          queue_(scratch.Allocate<uint32_t>(bodies.Size())) {
         std::fill(slotOf_.begin(), slotOf_.end(), kNone);
         std::fill(seen_.begin(), seen_.end(), uint8_t(0));
     }
@@ -79,10 +80,11 @@ private:
 
     Component ComponentOf(uint32_t first) {
         Component component;
-        component.bodies.push_back(first);
+        const size_t begin = queued_;
+        queue_[queued_++] = first;
         seen_[first] = 1;
-        for (size_t i = 0; i < component.bodies.size(); ++i) {
-            const uint32_t body = component.bodies[i];
+        for (size_t i = begin; i < queued_; ++i) {
+            const uint32_t body = queue_[i];
             bool anchored = false;
             VisitJoints(body, [&](uint32_t, const Joint& joint, int side) {
                 const uint32_t other = joint.body[1 - side];
@@ -90,7 +92,7 @@ private:
                 component.overridesMass |= joint.overridesMass;
                 if (joint.fixed[1 - side] || seen_[other]) return;
                 seen_[other] = 1;
-                component.bodies.push_back(other);
+                queue_[queued_++] = other;
             });
             // The root: a body connected to an immovable one, else the heaviest.
             const bool better = component.root == kNone || (anchored && !component.anchored) ||
@@ -98,6 +100,7 @@ private:
             if (better) component.root = body;
             component.anchored |= anchored;
         }
+        component.bodies = queue_.subspan(begin, queued_ - begin);
         return component;
     }
 
@@ -227,6 +230,8 @@ private:
     ScratchArena& scratch_;
     std::span<uint32_t> slotOf_;  // by body, its slot in the tree
     std::span<uint8_t> seen_;     // by body
+    std::span<uint32_t> queue_;   // bodies of the components, each once
+    size_t queued_ = 0;
 };
 
 }  // namespace

@@ -5,11 +5,10 @@
 
 #include <Fulcrum/Constraints/Joints/JointTree.h>
 #include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 #include <Fulcrum/Physics/World/JointStore.h>
-
-#include <vector>
 
 namespace fulcrum {
 
@@ -27,11 +26,11 @@ struct JointTrees {
         uint32_t body;
         float substeps;  // in multiples of the system's
     };
-    std::vector<Tree> trees;
-    std::vector<Rope> ropes;
-    std::vector<JointTreeSlot> slots;  // parents and blocks are relative to the tree's first ones
-    std::vector<JointTreeBlock> blocks;
-    std::vector<JointTreeAnchor> anchors;
+    Array<Tree> trees;
+    Array<Rope> ropes;
+    Array<JointTreeSlot> slots;  // parents and blocks are relative to the tree's first ones
+    Array<JointTreeBlock> blocks;
+    Array<JointTreeAnchor> anchors;
     uint64_t version = 0;  // version of the joints from which this was computed
 
     JointTree At(const Tree& tree) {

@@ -21,8 +21,9 @@ struct Ending {
     Vector3 v = Vector3::Zero();             // m/s, at the end of the step
     FreeTurn turn;                           // free rotation, if any
     bool fliesFreely = false;                // no contacts or joints
-    float slowSpeed = 0;                     // m/s, see SlowSpeed
-    float pulled = 0;                        // m/s, see PulledSpeed
+    bool isJointed = false;
+    float slowSpeed = 0;  // m/s, see SlowSpeed
+    float pulled = 0;     // m/s, see PulledSpeed
 };
 
 // A body without contacts and joints: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether its
@@ -129,6 +130,26 @@ float PulledSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) 
                          Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]) * inverseDt);
 }
 
+// Whether a body rests on others: it has been slow for as long as falling asleep takes, and is neither jointed nor
+// weightless.
+bool IsAtRest(const BodyStore& bodies, const Ending& ending, const SleepSettings& sleep) {
+    const BodyDynamics& d = *ending.turn.body;
+    const float* a = bodies.poses[ending.body].acceleration;
+    return d.slowSeconds > 0 && d.slowSeconds >= sleep.seconds && !ending.fliesFreely && !ending.isJointed &&
+           d.motion == MotionType::Dynamic && (a[0] != 0 || a[1] != 0 || a[2] != 0);
+}
+// Contacts hardly damp the slow modes of stacks (Docs/Step.md): what rests is damped while it decelerates, so that a
+// swing loses energy before each of its turning points, and what topples, rolls or slides is left alone.
+void DampSwings(Ending& ending, float dt) {
+    constexpr float kRate = 24;     // 1/s
+    constexpr float kLeast = 0.1f;  // 1/s, deceleration over speed: less is rounding
+    // The mean velocity of the step is displacement / dt, that at its end v.
+    if (!(Dot(ending.displacement, ending.v) > (1 + 0.5f * kLeast * dt) * dt * LengthSquared(ending.v))) return;
+    const float part = 1 / (1 + kRate * dt);
+    ending.v *= part;
+    ending.turn.angularVelocity *= part;
+}
+
 // Whether the velocity changes by force and torque of this step are finite.
 bool PushIsFinite(const BodyStore& bodies, uint32_t body) {
     if (!bodies.dynamics[body].hasForce) return true;
@@ -195,7 +216,8 @@ private:
             together = IsSymmetric(d);
             if (!together) RotateFreely(ending.turn, step_.dt);
         }
-        if (step_.settings.sleep.enabled && joints_.HasAny(body))
+        ending.isJointed = joints_.HasAny(body);
+        if (step_.settings.sleep.enabled && ending.isJointed)
             ending.pulled = PulledSpeed(bodies_, body, ending.slowSpeed, step_.dt);
         return true;
     }
@@ -211,11 +233,13 @@ private:
         BodyState& state = bodies_.states[body];
         state = {.marks = state.marks};
         if (d.dispersing) v = OwnVelocity(bodies_, crowd_.dispersing, body, v, step_.dt);
+        if (IsAtRest(bodies_, ending, step_.settings.sleep)) DampSwings(ending, step_.dt);
         findings.clamped += LimitSpeeds(bodies_, body, v, w);
         bodies_.SetVelocity(body, v, w);
         bodies_.MoveCenter(body, ending.displacement, ending.turn.rotation);
         bodies_.ForgetForces(body);
-        if (step_.settings.sleep.enabled && d.motion == MotionType::Dynamic) MeasureSlowness(ending, findings);
+        if (d.motion == MotionType::Dynamic && (step_.settings.sleep.enabled || !ending.isJointed))
+            MeasureSlowness(ending, findings);
     }
 
     void MeasureSlowness(const Ending& ending, WorkerFindings& findings) const {
@@ -223,9 +247,10 @@ private:
         const float speed =
             std::max(FarthestSpeed(bodies_, ending.body, ending.slowSpeed, ending.v, ending.turn.angularVelocity),
                      ending.pulled);
-        const bool slow = d.allowSleep && !d.crowded && speed < ending.slowSpeed;
+        const bool slow = !d.crowded && speed < ending.slowSpeed;
         d.slowSeconds = slow ? d.slowSeconds + step_.dt : 0.0f;
-        findings.sleepCandidates += slow && d.slowSeconds >= step_.settings.sleep.seconds;
+        const SleepSettings& sleep = step_.settings.sleep;
+        findings.sleepCandidates += sleep.enabled && d.allowSleep && slow && d.slowSeconds >= sleep.seconds;
     }
 
     const StepContext& step_;

@@ -1,8 +1,13 @@
 #include <Fulcrum/Physics/Stages/PairView.h>
 
+#include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Constraints/BodyLanes.h>
+#include <Fulcrum/Physics/Stages/CrowdContacts.h>
+#include <Fulcrum/Physics/Stages/SweepCast.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace fulcrum {
 
@@ -12,9 +17,23 @@ namespace {
 constexpr float kKeptDistance = 1e-3f;  // m, but at most this fraction of the smaller body's size:
 constexpr float kKeptFraction = 2e-3f;
 constexpr float kKeptAngle = 1e-3f;  // rad
+// Normals rotate with body A. Of what rolls they would lean forward until the manifold is found anew, so that slow
+// balls would accelerate on a level floor.
+constexpr float kKeptAngleOfRound = 2e-5f;
 
 // Impulses are kept for warm starting if the cosine of the angle between the normals of two steps is at least this.
 constexpr float kSameNormal = 0.5f;
+
+bool IsRound(const Shape& shape) {
+    switch (shape.Type()) {
+        case ShapeType::Sphere:
+        case ShapeType::Capsule:
+        case ShapeType::TaperedCapsule:
+        case ShapeType::Cylinder:
+        case ShapeType::Custom: return true;
+        default: return false;
+    }
+}
 
 // Points are stored relative to the bodies, the narrow phase computes them relative to the shapes.
 Vector3 ToBody(const CollideStores& stores, const Pair& pair, uint32_t collider, const Vector3& point) {
@@ -58,6 +77,85 @@ bool NormalTurned(const PairView& v, const RelativePose& reference, const Vector
     return Dot<float>(InverseRotate(reference.rotation, before), InverseRotate(v.bInA.rotation, now)) < kSameNormal;
 }
 
+// Whether the bounding spheres of two bodies are farther apart than `distance`.
+bool BallsApart(const CollideStores& stores, const Pair& pair, float distance) {
+    const Vector3 between = stores.OffsetOf(pair.bodyA, pair.bodyB);
+    const float reach = pair.shapeA->OuterRadius() + pair.shapeB->OuterRadius() + distance;
+    return LengthSquared(between) > reach * reach;
+}
+
+// m: how much closer the bounding spheres of two pieces may get within the step, also if one of them is stopped at its
+// start.
+float ClosingMotion(const CollideStores& stores, const Pair& pair) {
+    const BodyStore& bodies = stores.bodies;
+    Vector3 vA = bodies.LinearVelocityOf(pair.bodyA), vB = bodies.LinearVelocityOf(pair.bodyB);
+    if (pair.offset) {
+        const auto ofArm = [&](uint32_t body, uint32_t collider) {
+            return Cross<float>(
+                bodies.AngularVelocityOf(body),
+                Rotate(bodies.RotationOf(body), LocalOf(stores.bodies, stores.colliders, collider).position));
+        };
+        vA += ofArm(pair.bodyA, pair.colliderA);
+        vB += ofArm(pair.bodyB, pair.colliderB);
+    }
+    float fastest = std::max(LengthSquared(Vector3(vB - vA)), LengthSquared(vB));
+    if (!pair.fixedB) fastest = std::max(fastest, LengthSquared(vA));
+    return stores.step.dt * Sqrt(fastest);
+}
+
+// m: how much farther two pieces may extend by rotating within the step; convex ones at most to their bounding spheres.
+// For a rotating surface, the part near the other piece counts.
+float TurningMotion(const CollideStores& stores, const Pair& pair) {
+    const auto angleOf = [&](uint32_t body) { return stores.step.dt * Length(stores.bodies.AngularVelocityOf(body)); };
+    const auto ofConvex = [&](uint32_t body, const Shape& shape) {
+        const float outer = shape.OuterRadius();
+        return std::min(angleOf(body) * outer, outer - shape.InnerRadius());
+    };
+    const float ofA = ofConvex(pair.bodyA, *pair.shapeA);
+    if (pair.shapeB->IsConvex()) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
+    const float angle = angleOf(pair.bodyB);
+    if (!(angle > 0)) return ofA;
+    const Vector3 between = (stores.bodies.CenterOf(pair.bodyB) - stores.bodies.CenterOf(pair.bodyA)).cast<float>();
+    return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
+}
+
+// m: contacts farther away than this are left to the Continuous stage.
+float MotionBeforeCast(const CollideStores& stores, const Pair& pair) {
+    float motion = std::numeric_limits<float>::infinity();
+    if (stores.bodies.dynamics[pair.bodyA].continuous)
+        motion = FreeMotion(pair.shapeA->InnerRadius(), pair.shapeA->OuterRadius());
+    if (stores.bodies.dynamics[pair.bodyB].continuous)
+        motion = std::min(motion, FreeMotion(pair.shapeB->InnerRadius(), pair.shapeB->OuterRadius()));
+    return motion;
+}
+
+PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, Pair& pair, const RelativePose& bInA) {
+    PairView view{pair, bInA, bInA};
+    if (pair.offset)
+        view.bInA =
+            Inverse(LocalOf(bodies, colliders, pair.colliderA)) * bInA * LocalOf(bodies, colliders, pair.colliderB);
+    return view;
+}
+
+// m and rad, of a body until the stores' time.
+Twist<float> DisplacementOf(const CollideStores& stores, uint32_t body) {
+    const BodyStore& bodies = stores.bodies;
+    if (!bodies.CanMove(body))
+        return {bodies.LinearVelocityOf(body) * stores.elapsed, bodies.AngularVelocityOf(body) * stores.elapsed};
+    const float(&moved)[3] = bodies.states[body].deltaPosition, (&turned)[3] = bodies.states[body].deltaRotation;
+    return {Vector3(moved[0], moved[1], moved[2]), Vector3(turned[0], turned[1], turned[2])};
+}
+
+// Whether one of two bodies rotates so far in the step that it will collide again within it (Recollide.h). Beyond a
+// radian the points of the first substep would be far from the truth.
+bool WillCollideAgain(const CollideStores& stores, const Pair& pair) {
+    const auto will = [&](uint32_t body, const Shape& shape) {
+        const float dt = stores.step.dt, square = LengthSquared(stores.bodies.AngularVelocityOf(body)) * dt * dt;
+        return square * shape.OuterRadius() > 2 * kMostDeviation * shape.InnerRadius() && square < 1;
+    };
+    return will(pair.bodyA, *pair.shapeA) || (!pair.fixedB && will(pair.bodyB, *pair.shapeB));
+}
+
 // Clears the manifold.
 void Forget(Pair& pair, ContactRecord& record) {
     if (pair.pointCount == 0) ForgetFriction(record);
@@ -67,14 +165,33 @@ void Forget(Pair& pair, ContactRecord& record) {
 
 }  // namespace
 
+Quaternion CollideStores::RotationOf(uint32_t body) const {
+    const Quaternion before = bodies.RotationOf(body);
+    if (elapsed == 0) return before;
+    const Vector3 turned = DisplacementOf(*this, body).angular;
+    const Vec2<float> half = HalfTurnOf<float>(turned);
+    return Normalized(Quaternion{turned.x() * half.x(), turned.y() * half.x(), turned.z() * half.x(), half.y()} *
+                      before);
+}
+
+Vector3 CollideStores::OffsetOf(uint32_t bodyA, uint32_t bodyB) const {
+    Position offset = bodies.CenterOf(bodyB) - bodies.CenterOf(bodyA);
+    if (elapsed > 0)
+        offset += (DisplacementOf(*this, bodyB).linear - DisplacementOf(*this, bodyA).linear).cast<double>();
+    return offset.cast<float>();
+}
+
+PairView ViewPair(const CollideStores& stores, uint32_t index) {
+    Pair& pair = stores.pairs.pairs[index];
+    const Quaternion ofA = stores.RotationOf(pair.bodyA), ofB = stores.RotationOf(pair.bodyB);
+    return ViewPair(stores.bodies, stores.colliders, pair,
+                    {InverseRotate(ofA, stores.OffsetOf(pair.bodyA, pair.bodyB)), ofA.Conjugate() * ofB});
+}
+
 PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t index) {
     Pair& pair = pairs.pairs[index];
-    const RelativePose bInA = Relative(bodies.CenterPoseOf(pair.bodyA), bodies.CenterPoseOf(pair.bodyB));
-    PairView view{pair, bInA, bInA};
-    if (pair.offset)
-        view.bInA =
-            Inverse(LocalOf(bodies, colliders, pair.colliderA)) * bInA * LocalOf(bodies, colliders, pair.colliderB);
-    return view;
+    return ViewPair(bodies, colliders, pair,
+                    Relative(bodies.CenterPoseOf(pair.bodyA), bodies.CenterPoseOf(pair.bodyB)));
 }
 
 bool HardlyMoved(const PairView& v, const PairContact& contact) {
@@ -86,12 +203,43 @@ bool HardlyMoved(const PairView& v, const PairContact& contact) {
     const Quaternion& a = v.bInA.rotation;
     const Quaternion& b = old.rotation;
     const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
-    return LengthSquared(d) <= 0.25f * kKeptAngle * kKeptAngle;
+    const float squared = 4 * LengthSquared(d);
+    if (squared <= kKeptAngleOfRound * kKeptAngleOfRound) return true;
+    return squared <= kKeptAngle * kKeptAngle && !IsRound(*v.pair.shapeA) && !IsRound(*v.pair.shapeB);
 }
 
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {
     const bool touches = coloring.IsTouched(pair.bodyA) || (!pair.fixedB && coloring.IsTouched(pair.bodyB));
     return touches ? 2.0f : 1.0f;
+}
+
+PairReach::PairReach(const CollideStores& stores, const Pair& pair)
+    : speculative_(SpeculativeDistance(stores.step.settings, pair)),
+      closing_(FarEndFactor(stores.coloring, pair) * ClosingMotion(stores, pair)),
+      mostMotion_(stores.bodies.continuousCount > 0 ? MotionBeforeCast(stores, pair)
+                                                    : std::numeric_limits<float>::infinity()) {}
+
+bool PairReach::AreFarApart(const CollideStores& stores, const Pair& pair) const {
+    return BallsApart(stores, pair, Of(closing_));
+}
+
+float PairReach::WithRotation(const CollideStores& stores, const Pair& pair) const {
+    return Of(closing_ + TurningMotion(stores, pair));
+}
+
+void FindManifold(const CollideStores& stores, const PairView& view, float reach, Manifold& manifold,
+                  WorkerFindings& findings) {
+    Pair& pair = view.pair;
+    CollideSettings settings;
+    settings.method = stores.step.settings.narrowPhase;
+    settings.speculativeDistance = reach;
+    if (pair.shapeB->Type() == ShapeType::Plane)
+        Collide(*pair.shapeA, static_cast<const Plane&>(*pair.shapeB), view.bInA, settings, pair.cache, manifold,
+                findings.libccd);
+    else
+        Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB),
+                WithDistinctCenters(stores.bodies, stores.colliders, pair, view.bInA), settings, pair.cache, manifold,
+                findings.libccd);
 }
 
 void WriteManifold(const CollideStores& stores, const PairView& v, const Manifold& manifold, PairContact& contact,
@@ -116,11 +264,13 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
 
     // Velocity of B relative to A, in A's frame.
     const BodyStore& bodies = stores.bodies;
-    const Quaternion toWorld = bodies.RotationOf(pair.bodyA);
+    const Quaternion toWorld = stores.RotationOf(pair.bodyA);
     const auto inA = [&](const Vector3& world_) { return InverseRotate(toWorld, world_); };
     const Vector3 vA = inA(bodies.LinearVelocityOf(pair.bodyA)), wA = inA(bodies.AngularVelocityOf(pair.bodyA));
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
+    // Speeds at the start of the step do not tell which points of fast rotating bodies may touch.
+    const bool keepsAll = stores.elapsed > 0 || WillCollideAgain(stores, pair);
     const float farEnd = FarEndFactor(stores.coloring, pair),
                 speculative = SpeculativeDistance(stores.step.settings, pair);
     int count = 0;
@@ -133,7 +283,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(pointOfB - v.bodyBInA.position))));
         // One of the two may be stopped by another body.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
-        if (found.separation > speculative + farEnd * std::max(approach, 0.0f) * stores.step.dt) continue;
+        if (!keepsAll && found.separation > speculative + farEnd * std::max(approach, 0.0f) * stores.step.dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(pointOfB);
         for (int k = 0; k < 3; ++k) {
             record.points[count].onA[k] = onA[k];
@@ -144,6 +294,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
             if (oldFeatures[j] == found.feature) record.impulse[count] = oldImpulses[j];
         contact.features[count++] = found.feature;
     }
+    std::fill(record.impulse + count, record.impulse + ContactRecord::kMaxPoints, 0.0f);
     record.pointCount = static_cast<float>(count);
     pair.pointCount = static_cast<uint8_t>(count);
     if (oldCount == 0) ForgetFriction(record);

@@ -12,7 +12,6 @@ struct PairView {
     RelativePose bodyBInA;  // relative pose of the bodies' center frames
     RelativePose bInA;      // relative pose of the shapes' center frames
 };
-PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t pair);
 
 // The stores that the Collide stage reads, and the pairs, the only one that it writes.
 struct CollideStores {
@@ -22,12 +21,48 @@ struct CollideStores {
     const JointStore& joints;
     const ConstraintColoring& coloring;
     PairStore& pairs;
+    // s since the start of the step, if pairs collide again within it (Recollide.h).
+    float elapsed = 0;
+
+    // Of the bodies' center frames at that time. Relative positions do not depend on the distance from the origin.
+    Quaternion RotationOf(uint32_t body) const;
+    Vector3 OffsetOf(uint32_t bodyA, uint32_t bodyB) const;  // m, from A to B, world axes
 };
+
+// At the poses of the start of the step, and at those of the stores' time.
+PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t pair);
+PairView ViewPair(const CollideStores& stores, uint32_t pair);
 
 // Factor of the speculative distance relative to the motion in the step. A body that is hit at one end rotates, so that
 // its other end gets faster: for a rod up to twice as fast. So the factor is larger for bodies that touch something,
 // and 1 for others, which therefore move in exact free flight until the step in which they hit.
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair);
+
+// How near the shapes of a pair must be to have contacts in this step: the speculative distance and their possible
+// motion.
+class PairReach {
+public:
+    PairReach(const CollideStores& stores, const Pair& pair);
+    // Whether the bounding spheres of the two bodies are farther apart.
+    bool AreFarApart(const CollideStores& stores, const Pair& pair) const;
+    // m
+    float WithRotation(const CollideStores& stores, const Pair& pair) const;
+
+private:
+    float Of(float motion) const { return speculative_ + std::min(motion, mostMotion_); }
+    float speculative_, closing_, mostMotion_;
+};
+
+// The manifold of a pair without a surface.
+void FindManifold(const CollideStores& stores, const PairView& view, float reach, Manifold& manifold,
+                  WorkerFindings& findings);
+// Those of a pair with one, to findings.surface.
+void FindSurfaceManifolds(const CollideStores& stores, const PairView& view, uint32_t pair, float reach,
+                          WorkerFindings& findings);
+// Writes these to the pair and its additional manifolds. writesEmpty: manifolds that were not found lose their points.
+// Those without a slot are left in findings.surfaceLeft, as indices.
+void WriteSurfaceManifolds(const CollideStores& stores, const PairView& view, uint32_t pair, bool writesEmpty,
+                           WorkerFindings& findings);
 
 // Whether the manifolds found at contact.reference are still valid.
 bool HardlyMoved(const PairView& view, const PairContact& contact);

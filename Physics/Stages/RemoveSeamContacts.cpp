@@ -28,7 +28,7 @@ struct Support {
 
 class SeamRemover {
 public:
-    SeamRemover(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, std::vector<uint32_t>& seams)
+    SeamRemover(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, Array<uint32_t>& seams)
         : bodies_(bodies), colliders_(colliders), pairs_(pairs), seams_(seams) {}
 
     Support Describe(uint32_t index) const {
@@ -109,7 +109,7 @@ private:
     const BodyStore& bodies_;
     const ColliderStore& colliders_;
     PairStore& pairs_;
-    std::vector<uint32_t>& seams_;
+    Array<uint32_t>& seams_;
 };
 
 template <class Visit>
@@ -121,7 +121,7 @@ void VisitFixed(const ConstraintColoring& coloring, int from, int to, Visit&& vi
 }  // namespace
 
 void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
-                        PairStore& pairs, std::vector<uint32_t>& seams, ScratchArena& scratch) {
+                        PairStore& pairs, Array<uint32_t>& seams, ScratchArena& scratch) {
     for (uint32_t index : seams) {
         Pair& pair = pairs.pairs[index];
         pair.onSeam = false;

@@ -22,7 +22,7 @@ public:
     // round. A hit whose bodies may be reached before it by a body that an earlier hit deflected waits for the next
     // round.
     void ResolveAll(const StepWorkers& workers) {
-        const std::vector<SweepHit>& hits = sweeps_.hits;
+        const Array<SweepHit>& hits = sweeps_.hits;
         struct Key {
             float time;
             uint32_t body, otherCollider, index;
@@ -231,7 +231,7 @@ private:
     const SleepStores& stores_;
     BodyStore& bodies_;
     SweepStore& sweeps_;
-    std::vector<SweepHit>& kept_ = sweeps_.keptHits;
+    Array<SweepHit>& kept_ = sweeps_.keptHits;
     StepReport& report_;
     bool isLast_;
 };

@@ -4,11 +4,10 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Coloring.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 #include <Fulcrum/Physics/World/PairStore.h>
-
-#include <vector>
 
 namespace fulcrum {
 
@@ -27,10 +26,10 @@ struct SolvedContact {
 };
 
 struct SavedEfforts {
-    bool areRestored = false;             // the next BuildIslands takes them
-    bool areCurrent = false;              // nothing has changed since they were chosen
-    std::vector<SavedEffort> groups;      // ascending by body; empty if not current
-    std::vector<SolvedContact> contacts;  // ascending
+    bool areRestored = false;       // the next BuildIslands takes them
+    bool areCurrent = false;        // nothing has changed since they were chosen
+    Array<SavedEffort> groups;      // ascending by body; empty if not current
+    Array<SolvedContact> contacts;  // ascending
     // Versions of ConstraintColoring and PairStore for which restored efforts are valid.
     uint64_t version = 0, loadVersion = 0;
 

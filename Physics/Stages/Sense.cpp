@@ -52,7 +52,7 @@ void NoteTouched(const CollisionView& view, SensorStore& store, SensorSearch& se
 }
 
 // The segments of the paths cut by hits, sorted by body and time.
-void CollectCutWays(const SweepStore& sweeps, std::vector<MotionSegment>& cut) {
+void CollectCutWays(const SweepStore& sweeps, Array<MotionSegment>& cut) {
     cut.clear();
     for (size_t i = 0; i < sweeps.ended.size(); ++i)
         if (sweeps.ended[i].from < sweeps.endedAt[i]) cut.push_back({sweeps.ended[i], sweeps.endedAt[i]});
@@ -136,7 +136,7 @@ void FindCandidates(const CollisionView& view, const SensorStore& store, const S
             for (uint32_t i = range.begin; i < range.end; ++i) search(i, workers.findings[range.worker]);
         });
     };
-    const std::vector<uint32_t>& awake = view.bodies.awake;
+    const Array<uint32_t>& awake = view.bodies.awake;
     forEach(awake.size(), 128, [&](uint32_t i, WorkerFindings& findings) {
         SearchFromBody(view, store, sweeps, sensing.cut, awake[i], findings);
     });
@@ -149,7 +149,7 @@ void FindCandidates(const CollisionView& view, const SensorStore& store, const S
         SearchFromSensor(view, store, sensing, store.sensors[i], findings);
     });
 
-    std::vector<uint64_t>& candidates = sensing.candidates;
+    Array<uint64_t>& candidates = sensing.candidates;
     candidates.clear();
     for (WorkerFindings& findings : workers.findings) {
         candidates.insert(candidates.end(), findings.sensorCandidates.begin(), findings.sensorCandidates.end());
@@ -267,8 +267,8 @@ private:
     const SensorSearch& sensing_;
     Sensor& sensor_;
     uint32_t place_;
-    std::vector<uint64_t>::const_iterator candidate_, lastCandidate_;
-    std::vector<SensorVisit>::const_iterator visit_, lastVisit_;
+    Array<uint64_t>::const_iterator candidate_, lastCandidate_;
+    Array<SensorVisit>::const_iterator visit_, lastVisit_;
 };
 
 void ReportAll(const CollisionView& view, SensorStore& store, const SensorSearch& sensing, JobSystem& jobs,

@@ -1,10 +1,10 @@
 // Buffers of the Sense stage: which bodies may be inside which sensors in this step, and when.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Stages/SweepStore.h>
 
 #include <cstdint>
-#include <vector>
 
 namespace fulcrum {
 
@@ -22,10 +22,10 @@ struct MotionSegment {
 };
 
 struct SensorSearch {
-    std::vector<uint64_t> changedIn;   // by body: the last step in which SensorStore::changed had it
-    std::vector<uint64_t> candidates;  // index of a sensor and of a body that may overlap it in this step; sorted
-    std::vector<SensorVisit> visits;   // sorted
-    std::vector<MotionSegment> cut;    // paths of several segments, by body and time
+    Array<uint64_t> changedIn;   // by body: the last step in which SensorStore::changed had it
+    Array<uint64_t> candidates;  // index of a sensor and of a body that may overlap it in this step; sorted
+    Array<SensorVisit> visits;   // sorted
+    Array<MotionSegment> cut;    // paths of several segments, by body and time
 };
 
 inline size_t HeapBytes(const SensorSearch& search) {

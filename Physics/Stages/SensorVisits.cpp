@@ -94,7 +94,7 @@ Touch FirstTouch(const Mover& sensor, const Mover& body, float start, float end,
 class PairSearch {
 public:
     PairSearch(const CollisionView& view, uint32_t place, const MotionPath& sensorPath, const MotionPath& bodyPath,
-               std::vector<SensorVisit>& visits)
+               Array<SensorVisit>& visits)
         : view_(view),
           place_(place),
           sensorPath_(sensorPath),
@@ -197,7 +197,7 @@ private:
     uint32_t place_;
     const MotionPath& sensorPath_;
     const MotionPath& bodyPath_;
-    std::vector<SensorVisit>& visits_;
+    Array<SensorVisit>& visits_;
     size_t first_;
 };
 
@@ -262,7 +262,7 @@ Bounds PieceBounds(const BodyStore& bodies, const ColliderStore& colliders, cons
 }
 
 void FindVisits(const CollisionView& view, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
-                AtStart atStart, std::vector<SensorVisit>& visits) {
+                AtStart atStart, Array<SensorVisit>& visits) {
     PairSearch(view, sensor, sensorPath, bodyPath, visits).Run(atStart);
 }
 

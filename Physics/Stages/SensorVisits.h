@@ -47,6 +47,6 @@ enum class AtStart : uint8_t { Unknown, Outside, Inside };
 // inside from its first to its last touch of a sensor's collider in a segment of its path; a mesh or height field
 // counts as one collider. For two of these, or half spaces, only the ends of the step are tested.
 void FindVisits(const CollisionView& view, uint32_t sensor, const MotionPath& sensorPath, const MotionPath& bodyPath,
-                AtStart atStart, std::vector<SensorVisit>& visits);
+                AtStart atStart, Array<SensorVisit>& visits);
 
 }  // namespace fulcrum

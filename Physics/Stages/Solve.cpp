@@ -13,9 +13,11 @@
 #include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
 #include <Fulcrum/Physics/Stages/PrefetchLines.h>
+#include <Fulcrum/Physics/Stages/Recollide.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
+#include <atomic>
 
 namespace fulcrum {
 
@@ -39,7 +41,11 @@ enum class Verb : uint8_t {
     FirstCorrection,
     Correction,
     Separations,
-    NextSubstep
+    NextSubstep,
+    // For contacts whose bodies moved too far relative to each other (Recollide.h):
+    StoreOutdated,
+    Recollide,
+    Refill
 };
 
 struct Phase {
@@ -61,6 +67,10 @@ bool IsOverBodies(Verb verb) {
     return verb == Verb::IntegrateVelocities || verb == Verb::ClearPulls || verb == Verb::IntegratePoses;
 }
 
+bool IsOfRecollision(Verb verb) {
+    return verb == Verb::StoreOutdated || verb == Verb::Recollide || verb == Verb::Refill;
+}
+
 // Each substep ends with a verb over batches.
 bool IsLastOfSubstep(std::span<const Verb> verbs, size_t i) {
     return i + 1 == verbs.size() || verbs[i + 1] == Verb::NextSubstep;
@@ -70,9 +80,10 @@ class StepSolver {
 public:
     // pseudo: zeroed pseudo-velocities of all bodies; null if the group has no joints that are far apart.
     // pushes: by body; empty if not requested.
-    StepSolver(const MovedBodies& moved, SolverLayout& layout, const SolverGroup& group, const Effort& effort,
-               BodyState* pseudo, std::span<PushNote> pushes)
-        : moved_(moved),
+    StepSolver(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, const SolverGroup& group,
+               const Effort& effort, BodyState* pseudo, std::span<PushNote> pushes)
+        : stores_(stores),
+          moved_(moved),
           bodies_(moved.store),
           layout_(layout),
           group_(group),
@@ -106,10 +117,11 @@ public:
                 ++substep;
                 continue;
             }
+            if (IsSkipped(verb, substep)) continue;
             if (group_.HasTrees()) RunTrees(verb, substep);
             for (uint32_t c = group_.colorsBegin; c < group_.colorsEnd; ++c)
                 RunBatches({verb, substep, 0, IsLastOfSubstep(verbs, i)}, layout_.colors[c], 0,
-                           layout_.colors[c].Count());
+                           layout_.colors[c].Count(), findings);
         }
     }
 
@@ -126,15 +138,18 @@ private:
             const uint32_t begin = group_.bodiesBegin + block * kBodiesPerBlock;
             const uint32_t count = std::min(kBodiesPerBlock, group_.bodiesEnd - begin);
             RunBodies(phase.verb, phase.substep, std::span(layout_.bodies).subspan(begin, count), findings);
+        } else if (IsSkipped(phase.verb, phase.substep)) {
+            return;
         } else if (phase.color == group_.colorsEnd - group_.colorsBegin) {
             ForEachOverflowList(layout_, [&](auto& batches) {
-                for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch);
+                for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch, findings);
                 if (phase.isLast)
                     for (const auto& batch : batches) Note(batch);
             });
         } else {
             const ColorBatches& color = layout_.colors[group_.colorsBegin + phase.color];
-            RunBatches(phase, color, block * kBatchesPerBlock, std::min((block + 1) * kBatchesPerBlock, color.Count()));
+            RunBatches(phase, color, block * kBatchesPerBlock, std::min((block + 1) * kBatchesPerBlock, color.Count()),
+                       findings);
         }
     }
 
@@ -192,6 +207,9 @@ private:
             case Verb::IntegratePoses:
             case Verb::FirstCorrection:
             case Verb::Correction:
+            case Verb::StoreOutdated:
+            case Verb::Recollide:
+            case Verb::Refill:
             case Verb::NextSubstep: break;
         }
     }
@@ -205,7 +223,8 @@ private:
     }
 
     // Runs batches [begin, end) of a color, kind after kind.
-    void RunBatches(const Phase& phase, const ColorBatches& color, uint32_t begin, uint32_t end) {
+    void RunBatches(const Phase& phase, const ColorBatches& color, uint32_t begin, uint32_t end,
+                    WorkerFindings& findings) {
         uint32_t first = 0;  // index of the kind's first batch within the color
         ForEachBatchList(layout_, [&](auto& list, BatchKind kind) {
             const BatchRange& range = color.of[kind];
@@ -213,7 +232,7 @@ private:
             for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i) {
                 const uint32_t batch = range.begin + i - first;
                 if (i + 1 < last) Prefetch(list.batches[batch + 1]);
-                RunBatch(phase.verb, phase.substep, list.batches[batch]);
+                RunBatch(phase.verb, phase.substep, list.batches[batch], findings);
             }
             if (phase.isLast && notes_)
                 for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i)
@@ -231,7 +250,7 @@ private:
     void Note(const Batch&) const {}
 
     template <int N, bool kFixedB>
-    void RunBatch(Verb verb, uint8_t substep, ContactBatch<N, kFixedB>& batch) {
+    void RunBatch(Verb verb, uint8_t substep, ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
         BodyState* states = bodies_.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
@@ -242,10 +261,36 @@ private:
             case Verb::Pull:
             case Verb::StopPulls: PullContacts(batch, pseudo_, effort_.contacts); break;
             case Verb::FirstRelax:
-            case Verb::Relax: RelaxContacts(batch, states, ContactSettingsAt(substep, 1)); break;
+            case Verb::Relax:
+                RelaxContacts(batch, states, ContactSettingsAt(substep, 1));
+                NoteOutdated(batch, substep);
+                break;
             case Verb::FirstCorrection:
             case Verb::Correction: CorrectContacts(batch, states, ContactSettingsAt(substep, 1)); break;
-            case Verb::Separations: UpdateSeparations(batch, states, ContactSettingsAt(substep, 1)); break;
+            case Verb::Separations:
+                UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
+                NoteOutdated(batch, substep);
+                break;
+            case Verb::StoreOutdated: StoreContacts(batch, stores_.pairs.records.data()); break;
+            case Verb::Recollide: {
+                const uint32_t outdated = batch.rotated | batch.slid;
+                if (outdated == 0) break;
+                const CollideStores stores = StoresAt(substep);
+                for (int lane = 0; lane < batch.count; ++lane)
+                    if (outdated >> lane & 1u)
+                        RecollidePair(stores, batch.contact[lane], batch.rotated >> lane & 1u, h_, findings);
+                break;
+            }
+            case Verb::Refill: {
+                RefillContacts(StoresAt(substep),
+                               {.impulseScale = 1,
+                                .restitutionSpeed = effort_.contacts.restitutionSpeed,
+                                .maxPushSpeed = stores_.step.settings.contactPushSpeed,
+                                .dt = stores_.step.dt,
+                                .massOverrides = stores_.pairs.massOverrides.data()},
+                               bodies_, batch);
+                break;
+            }
             case Verb::IntegrateVelocities:
             case Verb::ClearPulls:
             case Verb::IntegratePoses:
@@ -255,7 +300,7 @@ private:
 
     // For joints, ball joints or others.
     template <class Batch>
-    void RunBatch(Verb verb, uint8_t substep, Batch& batch) {
+    void RunBatch(Verb verb, uint8_t substep, Batch& batch, WorkerFindings&) {
         BodyState* states = bodies_.states.data();
         const JointSolveSettings settings = JointSettingsAt(verb, substep);
         switch (verb) {
@@ -273,8 +318,25 @@ private:
             case Verb::ClearPulls:
             case Verb::StopPulls:
             case Verb::IntegratePoses:
+            case Verb::StoreOutdated:
+            case Verb::Recollide:
+            case Verb::Refill:
             case Verb::NextSubstep: break;
         }
+    }
+
+    template <class Batch>
+    void NoteOutdated(const Batch& batch, uint8_t substep) {
+        if ((batch.rotated | batch.slid) != 0) lastOutdated_.store(substep + 1, std::memory_order_relaxed);
+    }
+    // Whether no contact is outdated at the beginning of this substep.
+    bool IsSkipped(Verb verb, uint8_t substep) const {
+        return IsOfRecollision(verb) && lastOutdated_.load(std::memory_order_relaxed) != substep;
+    }
+    CollideStores StoresAt(uint8_t substep) const {
+        CollideStores stores = stores_;
+        stores.elapsed = h_ * static_cast<float>(substep);
+        return stores;
     }
 
     JointSolveSettings JointSettingsAt(Verb verb, uint8_t substep) const {
@@ -296,6 +358,7 @@ private:
         return settings;
     }
 
+    const CollideStores& stores_;  // of the start of the step
     const MovedBodies& moved_;
     BodyStore& bodies_;
     SolverLayout& layout_;
@@ -303,8 +366,9 @@ private:
     const Effort& effort_;
     BodyState* pseudo_;
     std::span<PushNote> pushes_;
-    ContactNote* notes_;  // by record; null without contact events
-    float h_;             // s, of a substep
+    ContactNote* notes_;                 // by record; null without contact events
+    float h_;                            // s, of a substep
+    std::atomic<int> lastOutdated_ = 0;  // the substep, from 1, after which some contact was outdated last
 };
 
 // Iterations over the pseudo-velocities per substep, for groups with joints that are far apart.
@@ -315,11 +379,13 @@ constexpr int kStopIterations = 2;
 // The solver loop as the sequence of its verbs. pulls: some joints are far apart.
 std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, ScratchArena& scratch) {
     const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
-                                               kPullIterations + kStopIterations + 8);
+                                               kPullIterations + kStopIterations + 11);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
-        if (substep > 0) verbs[n++] = Verb::NextSubstep;
+        if (substep > 0)
+            for (const Verb verb : {Verb::NextSubstep, Verb::StoreOutdated, Verb::Recollide, Verb::Refill})
+                verbs[n++] = verb;
         verbs[n++] = Verb::IntegrateVelocities;
         if (substep == 0) verbs[n++] = Verb::WarmStart;
         for (int i = 0; i < settings.velocityIterations; ++i)
@@ -381,8 +447,9 @@ bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
 // Runs the verbs returned by loopOf(effort, whether joints are pulled) for every group. far: some joints are far apart
 // and are pulled.
 template <class LoopOfEffort>
-void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& layout, bool far,
+void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, bool far,
               std::span<PushNote> pushes, const StepWorkers& workers, LoopOfEffort&& loopOf) {
+    const StepContext& step = stores.step;
     const std::span<const SolverGroup> groups = layout.groups;
     const std::span<BodyState> pseudo = workers.scratch.Allocate<BodyState>(far ? moved.store.states.size() : 0);
     std::ranges::fill(pseudo, BodyState{});
@@ -399,13 +466,13 @@ void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& l
         const std::span<const Phase> phases = PhasesOf(loops[g], layout, groups[g], workers.scratch);
         if (phases.empty()) continue;
         const Effort effort = EffortOf(step, groups[g]);
-        StepSolver(moved, layout, groups[g], effort, pseudoOf(g), pushes).RunTogether(phases, workers);
+        StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes).RunTogether(phases, workers);
     }
     workers.jobs.ParallelFor(static_cast<uint32_t>(groups.size()), 1, [&](JobRange range) {
         for (uint32_t g = range.begin; g < range.end; ++g) {
             if (groups[g].isLarge) continue;
             const Effort effort = EffortOf(step, groups[g]);
-            StepSolver(moved, layout, groups[g], effort, pseudoOf(g), pushes)
+            StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes)
                 .RunAlone(loops[g], workers.findings[range.worker]);
         }
     });
@@ -413,13 +480,14 @@ void RunVerbs(const StepContext& step, const MovedBodies& moved, SolverLayout& l
 
 }  // namespace
 
-void Solve(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, const JointStore& joints,
+void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& pairs, const JointStore& joints,
            const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, std::span<PushNote> pushes,
            const StepWorkers& workers) {
     if (coloring.Size() == 0) return;
     const bool far =
         std::ranges::any_of(workers.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
-    RunVerbs(step, {step.settings, colliders, pairs, joints, bodies}, layout, far, pushes, workers,
+    RunVerbs({step, bodies, colliders, joints, coloring, pairs}, {step.settings, colliders, pairs, joints, bodies},
+             layout, far, pushes, workers,
              [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, pulls, workers.scratch); });
     if (pushes.empty()) return;
     for (const SolverGroup& group : layout.groups)

@@ -7,10 +7,9 @@
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
 #include <Fulcrum/Constraints/Contacts/ContactNote.h>
 #include <Fulcrum/Constraints/Joints/BallBatch.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Settings.h>
 #include <Fulcrum/Physics/Stages/JointTrees.h>
-
-#include <vector>
 
 namespace fulcrum {
 
@@ -55,8 +54,8 @@ struct ColorBatches {
 // The batches of a kind, by group and color.
 template <class Batch>
 struct BatchList {
-    std::vector<Batch> batches;  // never shrinks, to keep memory
-    uint32_t count = 0;          // in use
+    Array<Batch> batches;  // never shrinks, to keep memory
+    uint32_t count = 0;    // in use
 };
 template <class Batch>
 size_t HeapBytes(const BatchList<Batch>& list) {
@@ -64,7 +63,7 @@ size_t HeapBytes(const BatchList<Batch>& list) {
 }
 template <bool kFixedB>
 struct ContactBatchList : BatchList<ContactBatch<kLanes, kFixedB>> {
-    std::vector<ConstraintColoring::Entry> contacts;  // by group and color
+    Array<ConstraintColoring::Entry> contacts;  // by group and color
 };
 template <bool kFixedB>
 size_t HeapBytes(const ContactBatchList<kFixedB>& list) {
@@ -82,25 +81,25 @@ struct ListedJoint {
 };
 
 struct SolverLayout {
-    std::vector<SolverGroup> groups;  // empty: nothing to solve
-    std::vector<ColorBatches> colors;
-    std::vector<uint32_t> bodies;  // dynamic bodies with constraints, by group
+    Array<SolverGroup> groups;  // empty: nothing to solve
+    Array<ColorBatches> colors;
+    Array<uint32_t> bodies;  // dynamic bodies with constraints, by group
     BatchList<BallBatch<kLanes>> balls;
     BatchList<JointBatch<kLanes>> joints;
     ContactBatchList<false> moving;
     ContactBatchList<true> fixed;
     // Constraints without a color: solved serially after the first group's colors.
-    std::vector<JointBatch<1>> overflowJoints;
-    std::vector<ContactBatch<1, false>> overflowMoving;
-    std::vector<ContactBatch<1, true>> overflowFixed;
-    std::vector<JointRows<kLanes>> jointRows;  // storage of the batches' rows
-    std::vector<JointRows<1>> overflowRows;
-    std::vector<ListedJoint> listedJoints;  // sorted
-    uint64_t jointVersion = 0;              // version of the coloring from which the list was made
+    Array<JointBatch<1>> overflowJoints;
+    Array<ContactBatch<1, false>> overflowMoving;
+    Array<ContactBatch<1, true>> overflowFixed;
+    Array<JointRows<kLanes>> jointRows;  // storage of the batches' rows
+    Array<JointRows<1>> overflowRows;
+    Array<ListedJoint> listedJoints;  // sorted
+    uint64_t jointVersion = 0;        // version of the coloring from which the list was made
     JointTrees trees;
-    std::vector<uint32_t> treesByGroup;  // indices of trees, by group
-    std::vector<ContactNote> notes;      // by contact, zero if not in a batch; empty without contact events
-    uint32_t colorCount = 0;             // colors in use
+    Array<uint32_t> treesByGroup;  // indices of trees, by group
+    Array<ContactNote> notes;      // by contact, zero if not in a batch; empty without contact events
+    uint32_t colorCount = 0;       // colors in use
     uint32_t islands = 0;
     uint64_t version = 0;      // version of the coloring from which this was made
     uint64_t loadVersion = 0;  // version of PairStore's loads

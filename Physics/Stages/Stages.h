@@ -12,7 +12,7 @@ namespace fulcrum {
 // theirs. Sets the velocities of dispersing bodies (Crowd.h), for which it reads contacts; freezes bodies that are not
 // finite. Must be followed by SettleStopped.
 void UpdateBounds(const StepContext& step, const PairStore& pairs, const SensorStore& sensors, BodyStore& bodies,
-                  ColliderStore& colliders, std::vector<DispersingBody>& dispersing, const StepWorkers& workers);
+                  ColliderStore& colliders, Array<DispersingBody>& dispersing, const StepWorkers& workers);
 // Handles bodies that workers froze or stopped in UpdateBounds or MoveBodies: clears the impulses of their contacts and
 // joints, and updates which bodies joints can move. In BodyLimits.cpp.
 void SettleStopped(std::span<const WorkerFindings> findings, const ColliderStore& colliders, BodyStore& bodies,
@@ -42,12 +42,12 @@ bool WakeHit(const PairStore& pairs, std::span<PairChange> changes, const SleepS
 // Applies the changes and resets them to None: colors contacts that began, and lists them in `began`; uncolors those
 // that ended, and removes those without points; removes dead pairs.
 void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, ConstraintColoring& coloring,
-           std::vector<uint32_t>& began);
+           Array<uint32_t>& began);
 
 // Removes the points from records of contacts caused by a seam between two immovable bodies, and lists their pairs in
 // `seams`; first restores those of the last step.
 void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
-                        PairStore& pairs, std::vector<uint32_t>& seams, ScratchArena& scratch);
+                        PairStore& pairs, Array<uint32_t>& seams, ScratchArena& scratch);
 
 // Sorts the colored constraints into the solver's groups and batches, if they changed. Islands under load get more
 // effort (ContactLoads.h): initializes the loads of contacts that began; limits impulses in records of islands that
@@ -66,7 +66,7 @@ void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintC
 // Substeps: integrates velocities, warm starts, iterates, integrates poses, relax or position iterations. Writes
 // velocities, displacements and the batches. Colliders and pairs are read for dispersing bodies. pushes: by body,
 // filled for ErrorMeter.h; empty if not requested.
-void Solve(const StepContext& step, const ColliderStore& colliders, const PairStore& pairs, const JointStore& joints,
+void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& pairs, const JointStore& joints,
            const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, std::span<PushNote> pushes,
            const StepWorkers& workers);
 
@@ -81,7 +81,7 @@ uint32_t MoveBodies(const StepContext& step, const ColliderStore& colliders, con
                     const StepWorkers& workers, StepReport& report);
 // Disables joints whose break force or torque was exceeded, and lists them.
 void BreakJoints(const BodyStore& bodies, ColliderStore& colliders, JointStore& joints, ConstraintColoring& coloring,
-                 std::vector<BrokenJoint>& broken);
+                 Array<BrokenJoint>& broken);
 
 // Reads the poses at the start of the step. Casts bodies with continuous collision that moved far along their paths,
 // and resolves hits: changes poses and velocities, wakes bodies. Writes the sweeps of the step, and bounds that contain

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Stages/Step.h>
 
+#include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/StepObserver.h>
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
@@ -34,12 +35,15 @@ void SettleStoppedIn(WorldState& world, const StepWorkers& workers) {
     SettleStopped(workers.findings, world.colliders, world.bodies, world.pairs, world.joints, world.coloring);
 }
 
-// The stages in the order in which they run, with their arguments.
+// The stages in the order in which they run, with their arguments. Queries of other threads are let in between the
+// first and the Store stage: what they read does not change there (WorldLock.h).
 constexpr Stage kStages[] = {
     {"UpdateBounds",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          UpdateBounds(step, world.pairs, world.sensors, world.bodies, world.colliders, state.crowd.dispersing, workers);
          SettleStoppedIn(world, workers);
+         world.outsideFatBounds.Clear();
+         world.lock.LetQueriesIn();
      }},
     {"FindPairs", FindPairsOf},
     {"Collide",
@@ -82,6 +86,7 @@ constexpr Stage kStages[] = {
     {"Store",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          StoreImpulses(step, world.bodies, state.solver, world.pairs, world.joints, workers);
+         world.lock.KeepQueriesOut();
          state.sleepCandidates = MoveBodies(step, world.colliders, world.joints, world.coloring, state.crowd,
                                             world.bodies, state.sweeps, workers, state.report);
          BreakJoints(world.bodies, world.colliders, world.joints, world.coloring, state.events.broken);
@@ -142,7 +147,7 @@ void ForgetRemoved(WorldState& world) {
 void Clear(EventBuffers& buffers) {
     buffers.contacts.clear();
     buffers.broken.clear();
-    for (std::vector<BodyId>* ids : {&buffers.awake, &buffers.moved, &buffers.woke, &buffers.fellAsleep}) ids->clear();
+    for (Array<BodyId>* ids : {&buffers.awake, &buffers.moved, &buffers.woke, &buffers.fellAsleep}) ids->clear();
     buffers.events = {};
 }
 
@@ -170,8 +175,8 @@ constexpr double kShortestStep = 1e-9;
 // between 1/240 and 1/30 s would drift by some centimeters, as each long step begins with a quarter of its load.
 constexpr float kMostImpulseScale = 2, kMostContactImpulseScale = 8;
 
-// Fraction of the last step's stiffnessDt that a shorter step keeps at least.
-constexpr float kStiffnessDecay = 0.95f;
+// 1/s: rate at which stiffnessDt decreases at most when steps become shorter, by 5 % in 1/60 s.
+constexpr float kStiffening = 3.0776f;
 
 StepContext ContextOf(const WorldState& world, const StepState& last, double dt) {
     const float substepDt = static_cast<float>(dt) / static_cast<float>(world.settings.solver.substeps);
@@ -185,7 +190,7 @@ StepContext ContextOf(const WorldState& world, const StepState& last, double dt)
             .impulseScale = std::min(longer, kMostImpulseScale),
             .contactImpulseScale = std::min(longer, kMostContactImpulseScale),
             // With the stiffness that short steps allow, bodies that sank during long ones would be thrown apart.
-            .stiffnessDt = std::max(substepDt, kStiffnessDecay * last.stiffnessDt),
+            .stiffnessDt = std::max(substepDt, Exp(-kStiffening * static_cast<float>(dt)) * last.stiffnessDt),
             .softness = SoftnessOf(world.settings, substepDt)};
 }
 

@@ -4,6 +4,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>
 #include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/EventBuffers.h>
 #include <Fulcrum/Physics/Stages/SavedEfforts.h>
@@ -16,7 +17,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <vector>
 
 namespace fulcrum {
 
@@ -35,21 +35,21 @@ struct NewContact {
 
 // One worker's results of a stage; merged in an order that does not depend on the distribution of work.
 struct alignas(64) WorkerFindings {
-    std::vector<uint32_t> colliders;         // UpdateBounds: those that left their fat bounds
-    std::vector<uint32_t> outsideFatBounds;  // Continuous: those that the solver moved out of them
-    std::vector<uint64_t> pairs;             // FindPairs: keys of new or resting pairs
-    uint32_t deepPairs = 0;                  // FindPairs: how many of these pairs overlap deeply
-    std::vector<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
-    std::vector<uint32_t> crowdedOverlaps;   // Collide: crowded bodies and their levels, once for each contact
-    SurfaceContacts surface;                 // Collide: temporary
-    std::vector<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
-    std::vector<MoreManifold> more;                                    // Collide: manifolds without a slot yet
-    std::vector<NewContact> newContacts;                               // Collide
-    std::vector<SweepHit> sweepHits;                                   // Continuous
-    std::vector<uint64_t> sensorCandidates;                            // Sense
-    std::vector<SensorVisit> sensorVisits;                             // likewise
-    uint32_t sensorTests = 0;                                          // likewise
-    std::vector<uint32_t> eventPairs;                                  // Events
+    Array<uint32_t> colliders;         // UpdateBounds: those that left their fat bounds
+    Array<uint32_t> outsideFatBounds;  // Continuous: those that the solver moved out of them
+    Array<uint64_t> pairs;             // FindPairs: keys of new or resting pairs
+    uint32_t deepPairs = 0;            // FindPairs: how many of these pairs overlap deeply
+    Array<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
+    Array<uint32_t> crowdedOverlaps;   // Collide: crowded bodies and their levels, once for each contact
+    SurfaceContacts surface;           // Collide: temporary
+    Array<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
+    Array<MoreManifold> more;                                    // Collide: manifolds without a slot yet
+    Array<NewContact> newContacts;                               // Collide
+    Array<SweepHit> sweepHits;                                   // Continuous
+    Array<uint64_t> sensorCandidates;                            // Sense
+    Array<SensorVisit> sensorVisits;                             // likewise
+    uint32_t sensorTests = 0;                                    // likewise
+    Array<uint32_t> eventPairs;                                  // Events
     CollideCounters libccd;
     uint32_t contacts = 0, points = 0, kept = 0;
     float deepest = 0;  // largest penetration, m
@@ -81,11 +81,11 @@ enum class PairChange : uint8_t { None, Began, Ended, Dead, WakesOther };
 
 // Results of FindPairs and Collide about pairs of this step.
 struct PairUpdates {
-    std::vector<uint64_t> found;              // FindPairs: keys of new and of resting pairs, sorted
-    std::vector<uint32_t> activated;          // FindPairs: pairs that it made active
-    std::vector<PairChange> changes;          // Collide: by pair; None for those that are not active
-    std::vector<MoreManifold> moreManifolds;  // Collide
-    bool hadManyNewContacts = false;          // Collide: in a step, see AddNewContacts
+    Array<uint64_t> found;              // FindPairs: keys of new and of resting pairs, sorted
+    Array<uint32_t> activated;          // FindPairs: pairs that it made active
+    Array<PairChange> changes;          // Collide: by pair; None for those that are not active
+    Array<MoreManifold> moreManifolds;  // Collide
+    bool hadManyNewContacts = false;    // Collide: in a step, see AddNewContacts
 };
 
 size_t HeapBytes(const PairUpdates& updates);
@@ -93,25 +93,27 @@ size_t HeapBytes(const PairUpdates& updates);
 // Bodies of crowds (Stages/Crowd.h).
 struct CrowdState {
     // Collide: bodies, ascending, once for each deep overlap; empty if none has many.
-    std::vector<uint32_t> deepOverlaps;
-    std::vector<DispersingBody> dispersing;  // by body, ascending
-    std::vector<uint32_t> crowded;           // with their levels (CrowdContacts.cpp), ascending, repeated
+    Array<uint32_t> deepOverlaps;
+    Array<DispersingBody> dispersing;  // by body, ascending
+    Array<uint32_t> crowded;           // with their levels (CrowdContacts.cpp), ascending, repeated
 };
 
 size_t HeapBytes(const CrowdState& crowd);
 
 struct StepState {
+    FULCRUM_WORLD_MEMORY
+
     float lastSubstepDt = 0;  // s, of the last step
     float stiffnessDt = 0;    // s, of the last step: see StepContext
 
     StepReport report;
-    std::vector<WorkerFindings> findings;  // by worker
+    Array<WorkerFindings> findings;  // by worker
     ScratchArena scratch;
 
     PairUpdates pairs;
     CrowdState crowd;
-    std::vector<uint32_t> began;  // Color: pairs that began to touch
-    std::vector<uint32_t> seams;  // RemoveSeamContacts: pairs without their points, in the last step
+    Array<uint32_t> began;  // Color: pairs that began to touch
+    Array<uint32_t> seams;  // RemoveSeamContacts: pairs without their points, in the last step
     SolverLayout solver;
     SavedEfforts savedEfforts;     // restored by a snapshot, for BuildIslands
     uint32_t sleepCandidates = 0;  // Store: bodies that have been slow for long enough

@@ -43,16 +43,16 @@ void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& 
 }
 
 template <class Batch>
-void StoreAll(const Records& to, const std::vector<Batch>& batches, uint32_t begin, uint32_t end,
-              const StoreScale& scale, const StepWorkers& workers) {
+void StoreAll(const Records& to, const Array<Batch>& batches, uint32_t begin, uint32_t end, const StoreScale& scale,
+              const StepWorkers& workers) {
     workers.jobs.ParallelFor(end - begin, 16, [&](JobRange range) {
         for (uint32_t i = range.begin; i < range.end; ++i)
             StoreBatch(to, batches[begin + i], scale, workers.findings[range.worker]);
     });
 }
 
-// Period in steps in which load levels may decrease.
-constexpr uint64_t kStepsToForget = 16;
+// Period in steps in which load levels may decrease, see StepsFor.
+constexpr uint32_t kStepsToForget = 16;
 
 }  // namespace
 
@@ -62,6 +62,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
     const SystemSettings& settings = step.settings;
     const Records to{bodies, pairs, joints};
     const bool notesSinks = AdaptsToLoads(settings, bodies), notesGaps = AdaptsToGaps(settings, joints);
+    const uint8_t stepsOfLoad = StepsOfLoad(step);
+    const bool forgets = step.number % StepsFor(kStepsToForget, step) == 0;
     const bool notesLarge = settings.accuracy.largeIslands || layout.OverflowCount() > 0;
     // impulseScale: see Effort; stiffness: see LoadLevel. Springs are those of `springs` of the system's substep.
     const auto sinkScaleOf = [&](float impulseScale, float springs, uint8_t stiffness) {
@@ -71,14 +73,16 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                          .depthScale = 1 / (springs * springs),
                          .gravity = settings.gravity,
                          .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
-                         .forgets = step.number % kStepsToForget == 0};
+                         .stepsOfLoad = stepsOfLoad,
+                         .forgets = forgets};
     };
     const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
         return GapScale{.target = settings.accuracy.jointError,
                         .drift = DriftIn(settings.accuracy, impulseScale),
                         .impulseScale = impulseScale,
                         .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
-                        .forgets = step.number % kStepsToForget == 0};
+                        .stepsOfLoad = stepsOfLoad,
+                        .forgets = forgets};
     };
     uint32_t stored[kBatchKinds] = {};
     const auto storeTo = [&](auto&& endOf, const StoreScale& scale) {

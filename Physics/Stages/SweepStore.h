@@ -3,13 +3,13 @@
 #pragma once
 
 #include <Fulcrum/Constraints/MassOverride.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 
 #include <cstdint>
-#include <vector>
 
 namespace fulcrum {
 
@@ -101,20 +101,20 @@ struct SweepStore {
         uint64_t step = 0;  // the step for which it is valid
     };
 
-    bool isKept = false;        // continuous collision or sensors need it in this step
-    float dt = 0;               // s, of the step
-    std::vector<Start> starts;  // by body: pose at the start of the step
-    std::vector<SearchBy>
-        searchBy;  // by body; None except for bodies with continuous collision that moved too far without a cast
-    std::vector<Sweep> swept;            // sweeps that were cast or changed
-    std::vector<uint32_t> places;        // by body: index into `swept`, or kNone
-    std::vector<Sweep> ended;            // sweeps ended by a hit, in the order of the hits
-    std::vector<float> endedAt;          // times
-    std::vector<uint32_t> active, next;  // indices into `swept`, of this round and the next
-    std::vector<SweepHit> hits;          // of a round; afterwards those postponed to the next
-    std::vector<SweepHit> keptHits;      // temporary
-    bool reportsHits = false;            // whether contact events are on in this step
-    std::vector<ReportedHit> reported;   // hits that stopped or deflected a body in this step
+    bool isKept = false;  // continuous collision or sensors need it in this step
+    float dt = 0;         // s, of the step
+    Array<Start> starts;  // by body: pose at the start of the step
+    Array<SearchBy>
+        searchBy;        // by body; None except for bodies with continuous collision that moved too far without a cast
+    Array<Sweep> swept;  // sweeps that were cast or changed
+    Array<uint32_t> places;        // by body: index into `swept`, or kNone
+    Array<Sweep> ended;            // sweeps ended by a hit, in the order of the hits
+    Array<float> endedAt;          // times
+    Array<uint32_t> active, next;  // indices into `swept`, of this round and the next
+    Array<SweepHit> hits;          // of a round; afterwards those postponed to the next
+    Array<SweepHit> keptHits;      // temporary
+    bool reportsHits = false;      // whether contact events are on in this step
+    Array<ReportedHit> reported;   // hits that stopped or deflected a body in this step
 
     // Whether the body's start pose is that of this step: it was awake at its start.
     bool IsOfStep(uint32_t body, uint64_t step) const { return body < starts.size() && starts[body].step == step; }

@@ -69,7 +69,7 @@ void ReserveLists(ColliderStore& colliders, std::span<WorkerFindings> workers) {
 // Sorted by id, so that trees and sensor lists are deterministic. Not needed if most colliders moved and there are no
 // sensors.
 void ListMoved(const SensorStore& sensors, ColliderStore& colliders, std::span<WorkerFindings> workers) {
-    std::vector<uint32_t>& moved = colliders.moved;
+    Array<uint32_t>& moved = colliders.moved;
     const auto first = static_cast<ptrdiff_t>(moved.size());
     for (WorkerFindings& findings : workers) {
         moved.insert(moved.end(), findings.colliders.begin(), findings.colliders.end());
@@ -98,7 +98,7 @@ void UpdateTrees(ColliderStore& store, JobSystem& jobs) {
 }  // namespace
 
 void UpdateBounds(const StepContext& step, const PairStore& pairs, const SensorStore& sensors, BodyStore& bodies,
-                  ColliderStore& colliders, std::vector<DispersingBody>& dispersing, const StepWorkers& workers) {
+                  ColliderStore& colliders, Array<DispersingBody>& dispersing, const StepWorkers& workers) {
     ReserveLists(colliders, workers.findings);
     PushDispersing(step, colliders, pairs, bodies, dispersing, workers.jobs);
     const Vector3 gravity = step.settings.gravity;

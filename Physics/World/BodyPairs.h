@@ -1,11 +1,11 @@
 // Visits the pairs of whole bodies. Called by BodyInterface between steps, and at the start of a step; one thread.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/World/WorldState.h>
 
 #include <algorithm>
 #include <span>
-#include <vector>
 
 namespace fulcrum {
 
@@ -14,7 +14,7 @@ namespace fulcrum {
 template <class Visitor>
 void VisitPairsOf(const BodyStore& bodies, const ColliderStore& colliders, const PairStore& pairs,
                   std::span<const uint32_t> of, Visitor&& visit) {
-    std::vector<uint32_t> found;
+    Array<uint32_t> found;
     for (uint32_t body : of)
         VisitColliders(bodies, colliders, body, [&](uint32_t collider) {
             pairs.VisitOf(collider, [&](uint32_t pair) { found.push_back(pair); });

@@ -3,13 +3,13 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Settings.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
 
 #include <cmath>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace fulcrum {
 
@@ -25,17 +25,19 @@ struct alignas(64) BodyDynamics {
     float outerRadius = 0;                          // m
     MotionType motion = MotionType::Static;
     LockedAxes lockedAxes = LockedAxes::None;
+    // Bits that steps write, and, in another byte, those that queries read meanwhile.
     bool awake : 1 = false;
-    bool spherical : 1 = false;  // all principal moments are equal
-    bool gyroscopic : 1 = false;
-    bool allowSleep : 1 = true;
     bool hasForce : 1 = false;  // BodyCold::force or torque is not zero
     bool frozen : 1 = false;
-    bool continuous : 1 = false;  // BodyCold::continuous is not Off
-    bool special : 1 = false;     // it has a BodyFilter, ask FiltersAllow; or gravity of its own, ask GravityOf
-    uint8_t layer : 5 = 0;
-    uint8_t crowded : 2 = 0;      // level, see CrowdContacts.h; 0: it is not
     bool dispersing : 1 = false;  // see Crowd.h
+    uint8_t crowded : 2 = 0;      // level, see CrowdContacts.h; 0: it is not
+    bool spherical : 1 = false;   // all principal moments are equal
+    bool continuous : 1 = false;  // BodyCold::continuous is not Off
+    bool : 0;
+    bool gyroscopic : 1 = false;
+    bool allowSleep : 1 = true;
+    bool special : 1 = false;  // it has a BodyFilter, ask FiltersAllow; or gravity of its own, ask GravityOf
+    uint8_t layer : 5 = 0;
 
     // Eight numbers each, for lanes.
     const float* InertiaRow() const { return inverseInertia; }
@@ -109,6 +111,7 @@ class MutableCompound;
 
 // Data of bodies with editable children.
 struct BodyChildren {
+    FULCRUM_WORLD_MEMORY
     MutableCompound* compound = nullptr;  // the body's own: BodyCold::shape
     Vector3 origin = Vector3::Zero();     // origin of the children's frame in the center frame, m
     double massUnit = 0;                  // kg, mass per unit of the compound's RelativeMass
@@ -117,6 +120,7 @@ struct BodyChildren {
 
 // Collision filter of a body, if not the default.
 struct BodyFilter {
+    FULCRUM_WORLD_MEMORY
     uint64_t category = 1, mask = ~uint64_t(0);
     CollisionGroup group;
     bool IsDefault() const { return category == 1 && mask == ~uint64_t(0) && !group.filter; }
@@ -124,6 +128,7 @@ struct BodyFilter {
 
 // The mass that a body gets when it becomes dynamic.
 struct KeptMass {
+    FULCRUM_WORLD_MEMORY
     float mass = 0;                     // kg
     Vector3 inertia = Vector3::Zero();  // kg m2, principal
     Quaternion principalAxes;           // from the principal frame to the center frame
@@ -160,11 +165,13 @@ struct BodyCold {
     std::unique_ptr<KeptMass> keptMass;  // null: that of a density of 1000 kg/m3
     BodyPush lastPush;                   // of the last step in which it was awake; see World/SteadyPushes.h
     Vector3 gravity = Vector3::Zero();   // m/s2, where hasGravity
+    // As in BodyDynamics.
+    bool placed : 1 = false;    // see BodyStore::MarkPlaced
+    bool isSteady : 1 = false;  // lastPush was the same in the step before
+    bool : 0;
     bool exists : 1 = false;
-    bool placed : 1 = false;   // see BodyStore::MarkPlaced
     bool removed : 1 = false;  // removed by the interface, its index not yet free
     bool isSensor : 1 = false;
-    bool isSteady : 1 = false;    // lastPush was the same in the step before
     bool isWorld : 1 = false;     // it is BodyStore::worldBody
     bool hasGravity : 1 = false;  // of its own, in place of the system's
 
@@ -204,16 +211,16 @@ class BodyStore {
 public:
     static constexpr uint32_t kNone = ~0u;
     // By index; all of the same size.
-    std::vector<BodyState> states;
-    std::vector<BodyMass> masses;
-    std::vector<BodyPose> poses;
-    std::vector<UnconstrainedVelocity> unconstrained;
-    std::vector<BodyDynamics> dynamics;
-    std::vector<BodyCold> cold;
-    std::vector<Remainder> remainders;
+    Array<BodyState> states;
+    Array<BodyMass> masses;
+    Array<BodyPose> poses;
+    Array<UnconstrainedVelocity> unconstrained;
+    Array<BodyDynamics> dynamics;
+    Array<BodyCold> cold;
+    Array<Remainder> remainders;
 
-    std::vector<uint32_t> placed;  // see MarkPlaced, in no order
-    std::vector<uint32_t> awake;   // dynamic bodies awake and kinematic ones that move, in no order
+    Array<uint32_t> placed;        // see MarkPlaced, in no order
+    Array<uint32_t> awake;         // dynamic bodies awake and kinematic ones that move, in no order
     uint32_t worldBody = kNone;    // the static one that stands for the world in joints, see JointInterface.cpp
     uint32_t continuousCount = 0;  // bodies with continuous collision
     uint32_t targetCount = 0;      // bodies with a penetrationTarget
@@ -221,7 +228,7 @@ public:
     IndexSet pushed;               // bodies that have a force or torque, or had one in the last step
     IndexSet singleMoves;          // bodies with a SingleMove
     // For events, if enabled: bodies created, woken or fallen asleep since the last step; with duplicates, unordered.
-    std::vector<uint32_t> sleepChanges;
+    Array<uint32_t> sleepChanges;
     bool notesSleepChanges = false;
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
@@ -316,7 +323,7 @@ public:
 
 private:
     friend struct SnapshotAccess;
-    std::vector<uint32_t> free_;
+    Array<uint32_t> free_;
     uint32_t count_ = 0;
 };
 

@@ -6,8 +6,7 @@
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
 #include <Fulcrum/Collision/Shapes/Shape.h>
-
-#include <vector>
+#include <Fulcrum/Math/Memory.h>
 
 namespace fulcrum {
 
@@ -41,16 +40,16 @@ struct ColliderRun {
 class ColliderStore {
 public:
     static constexpr uint32_t kNone = ~0u;
-    std::vector<Collider> colliders;
-    std::vector<ColliderShape> shapes;  // same index
+    Array<Collider> colliders;
+    Array<ColliderShape> shapes;  // same index
     // m, world: the origin of all bounds. They are floats, precise near it, so it is placed near the first body of an
     // empty world, in steps of a kilometer.
     Position boundsOrigin = Position::Zero();
     BoundsTree staticTree, movingTree, sensorTree;
     uint32_t movingLayers = 0, staticLayers = 0;  // bit i: a body of layer i is, or was, in the tree
-    std::vector<uint32_t> moved;                  // colliders whose pairs must be searched
+    Array<uint32_t> moved;                        // colliders whose pairs must be searched
     bool movedHasEmpty = false;                   // some of them have been removed
-    std::vector<ColliderRun> runs;                // further runs of bodies
+    Array<ColliderRun> runs;                      // further runs of bodies
 
     BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : staticTree; }
     void Reserve(size_t more);          // for so many more colliders
@@ -69,8 +68,8 @@ public:
 
 private:
     friend struct SnapshotAccess;
-    std::vector<std::vector<uint32_t>> free_;  // by count: first indices of freed runs
-    std::vector<uint32_t> freeRuns_;
+    Array<Array<uint32_t>> free_;  // by count: first indices of freed runs
+    Array<uint32_t> freeRuns_;
 };
 
 }  // namespace fulcrum

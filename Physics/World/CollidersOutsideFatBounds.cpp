@@ -8,6 +8,11 @@ void CollidersOutsideFatBounds::Forget(uint32_t collider) {
     if (tree_.Contains(collider)) tree_.Remove(collider);
 }
 
+void CollidersOutsideFatBounds::Clear() {
+    if (tree_.Size() > 0) tree_.Clear();
+    isFresh_.store(true, std::memory_order_relaxed);
+}
+
 void CollidersOutsideFatBounds::Refresh(const BodyStore& bodies, const ColliderStore& colliders) {
     if (isFresh_.load(std::memory_order_acquire)) return;
     const std::lock_guard<std::mutex> guard(refreshing_);

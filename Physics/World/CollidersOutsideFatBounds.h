@@ -7,7 +7,6 @@
 
 #include <atomic>
 #include <mutex>
-#include <vector>
 
 namespace fulcrum {
 
@@ -18,6 +17,7 @@ class CollidersOutsideFatBounds {
 public:
     void MarkStale() { isFresh_.store(false, std::memory_order_relaxed); }  // after a step
     void Forget(uint32_t collider);  // it was removed, or its bounds were updated
+    void Clear();                    // in a step: all fat bounds contain their colliders
     void Refresh(const BodyStore& bodies, const ColliderStore& colliders);  // before a query
 
     bool IsEmpty() const { return tree_.Size() == 0; }

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Math/Memory.h>
 
 #include <cstddef>
 #include <type_traits>
-#include <vector>
 
 namespace fulcrum {
 
@@ -22,7 +22,7 @@ size_t HeapBytes(const T& counted) { return counted.MemoryUsed(); }
 inline size_t HeapBytes(const ScratchArena& arena) { return arena.CapacityInBytes(); }
 
 template <class T>
-size_t HeapBytes(const std::vector<T>& elements) {
+size_t HeapBytes(const Array<T>& elements) {
     size_t bytes = elements.capacity() * sizeof(T);
     if constexpr (!std::is_trivially_copyable_v<T>)
         for (const T& element : elements) bytes += HeapBytes(element);

@@ -1,10 +1,11 @@
 // A set of small integers as bits, visited in ascending order, independent of the order of insertion.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace fulcrum {
 
@@ -46,7 +47,7 @@ public:
 
 private:
     friend struct SnapshotAccess;
-    std::vector<uint64_t> words_;
+    Array<uint64_t> words_;
     uint32_t size_ = 0;
 };
 

@@ -6,13 +6,13 @@
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/JointSettings.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
 #include <Fulcrum/Physics/World/LoadLevel.h>
 
 #include <algorithm>
 #include <memory>
-#include <vector>
 
 namespace fulcrum {
 
@@ -77,10 +77,10 @@ public:
     static constexpr uint32_t kNone = ~0u;
 
     // By index; all of the same size.
-    std::vector<JointRecord> records;
-    std::vector<JointType*> types;
-    std::vector<Joint> joints;
-    std::vector<LoadLevel> gaps;  // load levels of gaps between anchors
+    Array<JointRecord> records;
+    Array<JointType*> types;
+    Array<Joint> joints;
+    Array<LoadLevel> gaps;  // load levels of gaps between anchors
     IndexSet breakable;
     uint32_t targetCount = 0;  // joints with an errorTarget
 
@@ -120,8 +120,8 @@ public:
 
 private:
     friend struct SnapshotAccess;
-    std::vector<uint32_t> first_;  // by body
-    std::vector<uint32_t> free_;
+    Array<uint32_t> first_;  // by body
+    Array<uint32_t> free_;
     uint32_t count_ = 0;
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 // Grows by an eighth: doubling the largest arrays of a world would leave up to half unused.
 template <class T>
-void ReserveAtLeast(std::vector<T>& elements, size_t count) {
+void ReserveAtLeast(Array<T>& elements, size_t count) {
     const size_t size = elements.size();
     if (count > elements.capacity()) elements.reserve(std::max(count, size + size / 8 + 64));
 }
@@ -38,7 +38,7 @@ uint32_t PairStore::Find(uint32_t colliderA, uint32_t colliderB) const {
 }
 
 void PairStore::Grow() {
-    std::vector<Entry> old(table_.empty() ? 1024 : 2 * table_.size());
+    Array<Entry> old(table_.empty() ? 1024 : 2 * table_.size());
     old.swap(table_);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     for (const Entry& entry : old) {
@@ -122,7 +122,7 @@ void PairStore::KeepMassOverrides(bool keep) {
 void PairStore::KeepReported(bool keep) {
     if (keep == keepsReported_) return;
     keepsReported_ = keep;
-    reported = std::vector<ReportedContact>(keep ? pairs.size() : 0);
+    reported = Array<ReportedContact>(keep ? pairs.size() : 0);
     ended = {};
 }
 

@@ -9,12 +9,11 @@
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
 #include <Fulcrum/Constraints/MassOverride.h>
+#include <Fulcrum/Math/Memory.h>
 
 #include <Fulcrum/Physics/StepEvents.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
 #include <Fulcrum/Physics/World/LoadLevel.h>
-
-#include <vector>
 
 namespace fulcrum {
 
@@ -60,18 +59,18 @@ struct ReportedContact {
 
 class PairStore {
 public:
-    std::vector<Pair> pairs;
-    std::vector<PairContact> contacts;
-    std::vector<ContactRecord> records;  // by contact
+    Array<Pair> pairs;
+    Array<PairContact> contacts;
+    Array<ContactRecord> records;  // by contact
     // By contact, used for records with kMassOverride; empty without a contact listener, which sets them.
-    std::vector<MassOverride> massOverrides;
+    Array<MassOverride> massOverrides;
     void KeepMassOverrides(bool keep);
     // By pair, for its first manifold; empty without contact events. Kept while bodies sleep.
-    std::vector<ReportedContact> reported;
-    std::vector<ReportedContact> ended;  // for pairs removed since the last events
+    Array<ReportedContact> reported;
+    Array<ReportedContact> ended;  // for pairs removed since the last events
     void KeepReported(bool keep);
-    std::vector<LoadLevel> loads;  // by pair: kept while it has no contact
-    uint64_t loadVersion = 1;      // incremented when a load level changes, also of joints
+    Array<LoadLevel> loads;    // by pair: kept while it has no contact
+    uint64_t loadVersion = 1;  // incremented when a load level changes, also of joints
     IndexSet active;
 
     // Index of the pair of two colliders, or kNone.
@@ -133,11 +132,11 @@ private:
         uint32_t hash;
         uint32_t index = kNone;
     };
-    std::vector<Entry> table_;
-    std::vector<uint32_t> free_;
-    std::vector<uint32_t> freeContacts_;
-    std::vector<Links> links_;     // by pair
-    std::vector<uint32_t> heads_;  // by collider
+    Array<Entry> table_;
+    Array<uint32_t> free_;
+    Array<uint32_t> freeContacts_;
+    Array<Links> links_;     // by pair
+    Array<uint32_t> heads_;  // by collider
     uint32_t size_ = 0;
     bool keepsMassOverrides_ = false, keepsReported_ = false;
 };

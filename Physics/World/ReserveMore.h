@@ -2,14 +2,15 @@
 // elements as often as one large one.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
+
 #include <algorithm>
 #include <cstddef>
-#include <vector>
 
 namespace fulcrum {
 
 template <class T>
-void ReserveMore(std::vector<T>& elements, size_t more) {
+void ReserveMore(Array<T>& elements, size_t more) {
     const size_t count = elements.size() + more;
     if (count > elements.capacity()) elements.reserve(std::max(count, 2 * elements.capacity()));
 }

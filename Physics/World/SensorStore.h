@@ -2,11 +2,11 @@
 // and lists are read by others.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/SensorEvent.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 
 #include <algorithm>
-#include <vector>
 
 namespace fulcrum {
 
@@ -14,17 +14,17 @@ struct Sensor {
     BodyId id;
     SensorSees sees = SensorSees::Default;
     bool reportsStay = true;
-    bool removed = false;        // since the last step: the next one reports the end events
-    std::vector<BodyId> inside;  // ascending, at the end of the last step
-    std::vector<BodyId> insideNext;
-    std::vector<SensorEvent> events;  // of this step
+    bool removed = false;  // since the last step: the next one reports the end events
+    Array<BodyId> inside;  // ascending, at the end of the last step
+    Array<BodyId> insideNext;
+    Array<SensorEvent> events;  // of this step
 };
 
 struct SensorStore {
-    std::vector<Sensor> sensors;  // ascending by id
+    Array<Sensor> sensors;  // ascending by id
     // Bodies that were created, placed or given other settings since the last step; unordered, with repetitions.
-    std::vector<uint32_t> changed;
-    std::vector<SensorEvent> events;  // of the last step
+    Array<uint32_t> changed;
+    Array<SensorEvent> events;  // of the last step
 
     bool IsEmpty() const { return sensors.empty(); }
     // The index of a sensor, or where it would be inserted.

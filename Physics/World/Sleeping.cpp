@@ -1,10 +1,9 @@
 #include <Fulcrum/Physics/World/Sleeping.h>
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
-
-#include <vector>
 
 namespace fulcrum {
 
@@ -70,10 +69,10 @@ void RestPairs(const BodyStore& bodies, PairStore& pairs, ConstraintColoring& co
 }
 
 void SleepIslandOf(WorldState& world, uint32_t body) {
-    std::vector<uint32_t> roots(world.bodies.awake.size());
+    Array<uint32_t> roots(world.bodies.awake.size());
     FindAwakeIslands(world.bodies, world.pairs, world.coloring, roots);
     const uint32_t root = roots[world.bodies.cold[body].awakePlace];
-    std::vector<uint32_t> members;
+    Array<uint32_t> members;
     for (size_t i = 0; i < roots.size(); ++i)
         if (roots[i] == root) members.push_back(world.bodies.awake[i]);
     PutToSleep(world, world.outsideFatBounds, members);

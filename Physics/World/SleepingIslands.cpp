@@ -25,7 +25,7 @@ void SleepingIslands::Remove(uint32_t island) {
 }
 
 void SleepingIslands::RemoveBody(uint32_t island, uint32_t body) {
-    std::vector<uint32_t>& bodies = islands_[island];
+    Array<uint32_t>& bodies = islands_[island];
     bodies.erase(std::find(bodies.begin(), bodies.end(), body));
     if (bodies.empty()) Remove(island);
 }

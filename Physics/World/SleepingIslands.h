@@ -1,9 +1,10 @@
 // The sets of bodies that fell asleep together, and wake together. Written by the Sleep stage and by WakeBody. Serial.
 #pragma once
 
+#include <Fulcrum/Math/Memory.h>
+
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace fulcrum {
 
@@ -21,8 +22,8 @@ public:
 
 private:
     friend struct SnapshotAccess;
-    std::vector<std::vector<uint32_t>> islands_;
-    std::vector<uint32_t> free_;
+    Array<Array<uint32_t>> islands_;
+    Array<uint32_t> free_;
 };
 
 }  // namespace fulcrum

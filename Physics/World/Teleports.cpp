@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/World/Teleports.h>
 
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/Colors.h>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 namespace fulcrum {
 
@@ -18,7 +18,7 @@ namespace {
 void NoteTeleport(WorldState& world, uint32_t body) {
     constexpr float kSecondsOfTeleport = 5;  // in which a mechanism comes together, see Docs/Joints.md
     JointStore& store = world.joints;
-    std::vector<uint32_t> bodies{body};
+    Array<uint32_t> bodies{body};
     while (!bodies.empty()) {
         const uint32_t from = bodies.back();
         bodies.pop_back();
@@ -89,7 +89,7 @@ private:
     }
 
     const BodyStore& bodies_;
-    std::vector<BodyPlace> before_;  // center frames
+    Array<BodyPlace> before_;  // center frames
 };
 
 }  // namespace

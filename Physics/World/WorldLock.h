@@ -1,9 +1,14 @@
-// Reader-writer lock: queries share the world, changes and steps have exclusive access. A reader that arrives while a
-// writer waits lets it go first, once, so that neither starves. Access is recorded per thread: nested access of a kind
-// that the thread already has takes no lock, and access that would deadlock is refused.
+// Reader-writer lock with two kinds of readers. Whoever changes or steps the world has exclusive access. During most of
+// a step, queries are let in: what they read, poses and trees, changes only in the first stage and the last ones, and
+// is the state of the last step in between. Other readers wait for the whole step. A reader that arrives while a writer
+// waits lets it go first, once, so that neither starves.
+//
+// Access is recorded per thread: nested access of a kind that the thread already has takes no lock, and access that
+// would deadlock is refused. The world's memory is the current one of the thread meanwhile (Memory.h).
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Result.h>
 
 #include <memory>
@@ -13,19 +18,25 @@ namespace fulcrum {
 
 class WorldLock {
 public:
-    WorldLock();
+    explicit WorldLock(MemoryResource* memory = nullptr);
     ~WorldLock();
 
-    enum class Access : uint8_t { None, Reads, Changes };
-    // The highest access of this thread, its own or inherited from the thread whose job it runs.
+    enum class Access : uint8_t {
+        None,
+        Queries,  // may read what queries read
+        Reads,    // may read everything
+        Edits,    // keeps all other threads out, and may read and change
+        Changes,  // is changing or stepping the world: neither reads nor further changes are allowed
+    };
+    // The access of this thread in its innermost scope, its own or that of the thread whose job it runs.
     static Access OfThisThread(const WorldLock& lock);
     // Why this thread may not read or change the world now; empty if it may.
-    static std::optional<Error> RefusalOfReading(const WorldLock& lock);
+    static std::optional<Error> RefusalOfReading(const WorldLock& lock, Access access = Access::Reads);
     static std::optional<Error> RefusalOfChanging(const WorldLock& lock);
 
     // Records this thread's access for the lifetime of the object, without taking the lock. Used directly by workers
     // that run jobs of a thread which holds the lock.
-    class Scope {
+    class Scope : private MemoryScope {
     public:
         Scope(WorldLock& lock, Access access);
         ~Scope();
@@ -44,43 +55,58 @@ public:
 
     class Shared : public Scope {
     public:
-        explicit Shared(WorldLock& lock);
+        // access: Queries or Reads.
+        explicit Shared(WorldLock& lock, Access access = Access::Reads);
         ~Shared();
-        // Empty unless this thread is changing or stepping the world: then the object does nothing.
+        // Empty unless this thread is changing or stepping the world, or holds it for queries alone and asks for more:
+        // then the object does nothing.
         const std::optional<Error>& Refusal() const { return refusal_; }
 
     private:
-        Shared(WorldLock& lock, std::optional<Error> refusal);
+        Shared(WorldLock& lock, Access access, std::optional<Error> refusal);
         std::optional<Error> refusal_;
+        Access taken_ = Access::None;
     };
 
     class Exclusive : public Scope {
     public:
-        explicit Exclusive(WorldLock& lock);
+        // access: Changes, or Edits to change and read several times.
+        explicit Exclusive(WorldLock& lock, Access access = Access::Changes);
         ~Exclusive();
         // Empty unless this thread reads or changes the world already: then the object does nothing.
         const std::optional<Error>& Refusal() const { return refusal_; }
 
     private:
-        Exclusive(WorldLock& lock, std::optional<Error> refusal);
+        Exclusive(WorldLock& lock, Access access, std::optional<Error> refusal);
         std::optional<Error> refusal_;
     };
 
+    // Called by a step: from now on what queries read does not change, until KeepQueriesOut returns. Nothing if this
+    // thread holds the world by Edits, so that it keeps others out of the step, too.
+    void LetQueriesIn();
+    void KeepQueriesOut();
+    // Whether queries are let in now.
+    bool LetsQueriesIn() const;
+
 private:
-    struct State;  // so that <shared_mutex> and <atomic>, which are slow to compile, stay out of programs
+    struct State;  // so that <atomic>, which is slow to compile, stays out of programs
+    bool IsStepsOwn() const;
     const std::unique_ptr<State> state_;
+    MemoryResource* const memory_;
 };
 
-// A job system that gives workers the access of the thread whose job they run, while they run it.
+// A job system that gives workers the access of the thread whose job they run, while they run it. Jobs of queries
+// during a step run on the calling thread alone: the step needs the workers. So do all if `jobs` is null.
 class WorldJobs final : public JobSystem {
 public:
-    WorldJobs(JobSystem& jobs, WorldLock& lock) : jobs_(jobs), lock_(lock) {}
-    uint32_t WorkerCount() const override { return jobs_.WorkerCount(); }
+    FULCRUM_WORLD_MEMORY
+    WorldJobs(JobSystem* jobs, WorldLock& lock) : jobs_(jobs), lock_(lock) {}
+    uint32_t WorkerCount() const override { return jobs_ ? jobs_->WorkerCount() : 1; }
     void ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) override;
     void RunOnWorkers(FunctionRef<void(uint32_t worker)> job) override;
 
 private:
-    JobSystem& jobs_;
+    JobSystem* jobs_;
     WorldLock& lock_;
 };
 

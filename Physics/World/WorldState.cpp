@@ -5,8 +5,8 @@
 namespace fulcrum {
 
 size_t HeapBytes(const WorldState& world) {
-    const auto& [settings, ownJobs, jobs, listener, observer, callObserver, bodies, colliders, pairs, joints, coloring,
-                 sleeping, sensors, removed, step, lock, outsideFatBounds] = world;
+    const auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, pairs, joints, coloring, sleeping,
+                 sensors, removed, step, lock, outsideFatBounds] = world;
     return HeapBytes(settings, listener, bodies, colliders, pairs, joints, coloring, sleeping, sensors, removed, step,
                      outsideFatBounds);
 }

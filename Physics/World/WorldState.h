@@ -2,7 +2,7 @@
 // one. Independent of the stages and the interfaces.
 #pragma once
 
-#include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/ColliderStore.h>
 #include <Fulcrum/Physics/World/CollidersOutsideFatBounds.h>
@@ -13,7 +13,6 @@
 #include <Fulcrum/Physics/World/WorldLock.h>
 
 #include <memory>
-#include <vector>
 
 namespace fulcrum {
 
@@ -22,9 +21,11 @@ class CallObserver;
 class StepObserver;
 
 struct WorldState {
+    FULCRUM_WORLD_MEMORY
+    explicit WorldState(MemoryResource* memory) : lock(memory) {}
+
     SystemSettings settings;
-    std::unique_ptr<ThreadPool> ownJobs;
-    std::unique_ptr<JobSystem> jobs;  // the user's, or our own, as WorldJobs
+    std::unique_ptr<WorldJobs> jobs;
     const ContactListener* listener = nullptr;
     StepObserver* observer = nullptr;
     CallObserver* callObserver = nullptr;
@@ -37,8 +38,8 @@ struct WorldState {
     SleepingIslands sleeping;
     SensorStore sensors;
 
-    std::vector<uint32_t> removed;  // bodies to forget before the next step
-    uint64_t step = 0;              // number of steps begun
+    Array<uint32_t> removed;  // bodies to forget before the next step
+    uint64_t step = 0;        // number of steps begun
 
     // Lock for queries.
     WorldLock lock;

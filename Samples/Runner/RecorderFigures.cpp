@@ -19,6 +19,10 @@ void Recorder::NoteView() {
         recorded.lower = PlaceFrom(view.lower, origin);
         recorded.upper = PlaceFrom(view.upper, origin);
     }
+    if (view.waterLower != view.waterUpper) {
+        recorded.waterLower = PlaceFrom(view.waterLower, origin);
+        recorded.waterUpper = PlaceFrom(view.waterUpper, origin);
+    }
     recording.hasFigures = true;
     for (int stage = 0; stage < kStageCount; ++stage) recording.stageNames.push_back(StageName(stage));
 }

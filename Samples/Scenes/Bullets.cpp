@@ -35,6 +35,16 @@ void Build(SceneWorld& world) {
     }
 }
 
+// How far each fast body came in the step.
+void DrawTrails(SceneWorld& world) {
+    if (!world.Draw().IsOn()) return;
+    for (const BodyId body : world.watched) {
+        const Position at = world.Bodies().GetPose(body).position;
+        const Vector3 velocity = world.Bodies().GetLinearVelocity(body);
+        if (Length(velocity) > 10) world.Draw().Line(at - velocity.cast<double>() / 60, at, Ink::Path);
+    }
+}
+
 double BallsBehindTheWalls(const SceneWorld& world) {
     double count = 0;
     for (const BodyId body : world.watched) count += !(world.Bodies().GetPose(body).position.x() < kWall);
@@ -48,11 +58,12 @@ extern const Scene kScene{
     .description = "balls at 200 to 1000 m/s at walls of 1 and 10 cm, rods at 100 rad/s between posts of 6 cm",
     .steps = 240,
     .view = {.color = ColorMode::Speed,
-             .from = {-0.5f, 0.45f, 1},
-             .lower = {-14, 0, -13},
-             .upper = {32, 4, 13},
-             .picture = 0.03},
+             .from = {-0.8f, 0.35f, 0.6f},
+             .lower = {-10, 0, -12},
+             .upper = {30, 3, 12},
+             .picture = 0.008},
     .build = Build,
+    .afterStep = DrawTrails,
     .accuracy = BallsBehindTheWalls,
     .accuracyMeaning = "balls behind the walls",
     .accuracyUnit = "balls",

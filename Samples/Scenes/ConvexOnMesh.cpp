@@ -23,7 +23,7 @@ extern const Scene kScene{
     .steps = 300,
     .sleeping = false,
     .isClosed = true,
-    .view = {.color = ColorMode::Plain, .picture = 0.3},
+    .view = {.color = ColorMode::Plain, .lower = {-45, 0, -45}, .upper = {45, 14, 45}, .picture = 0.3},
     .build = Build,
     .accuracy = BodiesBelowTheMesh,
     .accuracyMeaning = "bodies more than 1 m below the lowest point of the mesh",

@@ -56,7 +56,11 @@ double LargestError(const SceneWorld& world) {
 extern const Scene kScene{
     .name = "endless_slope",
     .description = "balls roll down a half space that has no end, crates stay; swings hang from bodies without a shape",
-    .view = {.color = ColorMode::Plain, .from = {0.1f, 0.35f, 1}},
+    .view = {.color = ColorMode::Plain,
+             .from = {0.35f, 0.3f, 1},
+             .lower = {-1, 1, -6},
+             .upper = {15, 8.6, 7.5},
+             .picture = 0.35},
     .build = Build,
     .accuracy = LargestError,
     .accuracyMeaning = "largest distance of a ball from where rolling takes it",

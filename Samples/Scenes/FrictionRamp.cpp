@@ -57,9 +57,9 @@ extern const Scene kScene{
     .steps = 300,
     .isClosed = true,
     .view = {.color = ColorMode::Plain,
-             .from = {0.75f, 0.6f, 1},
-             .lower = {-9, 1, -6},
-             .upper = {9, 9.5, 6},
+             .from = {0.8f, 0.5f, 0.8f},
+             .lower = {-8, 0.5, -6},
+             .upper = {8, 15, 6},  // room for the labels
              .picture = 0.42},
     .build = Build,
     .accuracy = Accuracy,

@@ -51,7 +51,7 @@ extern const Scene kScene{
     .steps = 300,
     .sleeping = false,
     .isClosed = true,
-    .view = {.color = ColorMode::Plain, .picture = 0.8},
+    .view = {.color = ColorMode::Plain, .picture = 1},
     .build = Build,
     .accuracy = Accuracy,
     .accuracyMeaning = "smallest height of a body's center minus 1.8 m, where negative",

@@ -42,7 +42,7 @@ extern const Scene kScene{
     .steps = 120,
     .sleeping = false,
     .isClosed = true,
-    .view = {.color = ColorMode::Plain, .picture = 0.3},
+    .view = {.color = ColorMode::Plain, .lower = {-45, 0, -45}, .upper = {45, 14, 45}, .picture = 0.3},
     .build = Build,
     .query = Cast,
     .queryCount = kRays,

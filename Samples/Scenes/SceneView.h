@@ -25,10 +25,12 @@ struct SceneView {
     bool showsJoints = true;
     // Index into SceneWorld::watched of the body that the camera goes with; -1: it stays.
     int follows = -1;
+    // A box of water, m, for the eye alone; lower == upper: none.
+    Position waterLower = Position::Zero(), waterUpper = Position::Zero();
 };
 
 // What something is made of, for the eye alone.
-enum class Look : uint8_t { Default, Grass, Ice, Rubber, Brass, Wood, Stone, Belt };
+enum class Look : uint8_t { Default, Grass, Ice, Rubber, Brass, Wood, Stone, Belt, Glass };
 
 struct BodyLook {
     std::string label{};  // stands beside the body in the picture; empty: none

@@ -43,7 +43,7 @@ extern const Scene kScene{
     .description = "40 rods of 8 m and 400 plates of 4 cm, 10 cm thick at most, fall on a wavy mesh and come to rest",
     .steps = 1500,
     .usesSeed = true,
-    .view = {.color = ColorMode::Plain, .lower = {-20, 0, -10}, .upper = {20, 4, 30}, .picture = 0.1},
+    .view = {.color = ColorMode::Plain, .lower = {-14, 0, -4}, .upper = {14, 9, 20}, .picture = 0.04},
     .build = Build,
     .accuracy = LostOrAwake,
     .accuracyMeaning = "bodies that fell through the ground or do not sleep yet",

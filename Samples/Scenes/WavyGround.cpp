@@ -39,7 +39,10 @@ BodyId AddWavyGround(SceneWorld& world, const Material& material) {
         for (int x = 0; x < kWavyCells; ++x)
             indices.insert(indices.end(),
                            {at(x, z), at(x, z + 1), at(x + 1, z), at(x + 1, z), at(x, z + 1), at(x + 1, z + 1)});
-    return world.Add({.shape = world.MeshOf(vertices, indices), .motion = MotionType::Static, .material = material});
+    const BodyId id =
+        world.Add({.shape = world.MeshOf(vertices, indices), .motion = MotionType::Static, .material = material});
+    world.Show(id, {.look = Look::Grass});
+    return id;
 }
 
 void AddShapesOverWaves(SceneWorld& world) {

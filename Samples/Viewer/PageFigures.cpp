@@ -63,6 +63,7 @@ Json ViewHeader(const RecordedView& view) {
     if (!view.color.empty()) json["color"] = view.color;
     if (view.from != Vector3::Zero()) json["from"] = ArrayOf(view.from);
     if (view.lower != view.upper) json.update({{"lower", ArrayOf(view.lower)}, {"upper", ArrayOf(view.upper)}});
+    if (view.waterLower != view.waterUpper) json["water"] = {ArrayOf(view.waterLower), ArrayOf(view.waterUpper)};
     return json;
 }
 

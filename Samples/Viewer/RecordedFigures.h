@@ -27,7 +27,8 @@ struct RecordedView {
     Vector3 lower = Vector3::Zero(), upper = Vector3::Zero();  // m, the box that fills the picture
     double picture = 0.6;                                      // part of the run
     bool showsJoints = true;
-    int follows = -1;  // a body; -1: none
+    int follows = -1;                                                    // a body; -1: none
+    Vector3 waterLower = Vector3::Zero(), waterUpper = Vector3::Zero();  // m, a box of water
 };
 
 struct RecordedLook {

@@ -19,7 +19,7 @@ std::vector<Setting> PresetsAndOddSettings() {
     return settings;
 }
 
-// Gates that are about how much effort a scene needs: that it stands, is deep, sleeps.
+// Requirements that are about how much effort a scene needs: that it stands, is deep, sleeps.
 bool DependsOnEffort(const std::string& gate) {
     for (const char* each :
          {"stands", "stretches by less than 10 %", "sideways and upwards below 1 cm/s", "height to 1 mm",

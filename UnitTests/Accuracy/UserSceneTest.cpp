@@ -23,13 +23,16 @@ protected:
 
     // Runs a scene at some substeps of 1/60 s.
     std::vector<RunRecord> RunAt(LabOptions lab, std::initializer_list<int> substeps) const {
-        lab.folder = folder_ / "runs";
-        lab.isQuick = true;
         for (const int count : substeps) {
             Setting setting;
             setting.solver.substeps = count;
             lab.settings.push_back(setting);
         }
+        return Run(std::move(lab));
+    }
+    std::vector<RunRecord> Run(LabOptions lab) const {
+        lab.folder = folder_ / "runs";
+        lab.isQuick = true;
         Result<std::vector<RunRecord>> runs = RunLab(lab);
         EXPECT_TRUE(runs);
         return runs ? std::move(runs.Value()) : std::vector<RunRecord>();
@@ -83,6 +86,45 @@ TEST_F(UserScene, OfAFileHasTheOverlapOfItsContactsAsError) {
     const std::string advice = AdviceForError({command.Value().lab.scenes[0], runs}, 0.5);
     EXPECT_NE(advice.find("Cheapest setting with an error of at most 50 %"), std::string::npos) << advice;
     EXPECT_NE(advice.find("stack.json"), std::string::npos) << advice;
+}
+
+// The five upper cubes press on the lowest contact: no setting of these two is exact to a billionth.
+TEST_F(UserScene, ThatNoSettingSufficesForSaysWhatStandsInTheWay) {
+    const std::string file = (folder_ / "stack.json").string();
+    ASSERT_TRUE(WriteScene(file, Stack()));
+    const auto command = ParseLabCommand({"advise", file, "--error", "1e-9"});
+    ASSERT_TRUE(command) << command.GetError().message;
+    const std::vector<RunRecord> runs = RunAt(command.Value().lab, {1, 16});
+    ASSERT_EQ(runs.size(), 2u);
+    for (const RunRecord& run : runs) EXPECT_NE(run.worst.find("`floor` and body 1"), std::string::npos) << run.worst;
+    const SceneRuns scene{command.Value().lab.scenes[0], runs};
+    const std::string advice = AdviceForError(scene, 1e-9);
+    EXPECT_NE(advice.find("No setting of this grid has an error of at most 1e-07 %"), std::string::npos) << advice;
+    EXPECT_NE(advice.find("What stands in the way"), std::string::npos) << advice;
+    EXPECT_NE(advice.find(runs[1].worst), std::string::npos) << advice;
+    EXPECT_NE(advice.find("it still falls"), std::string::npos) << advice;
+    EXPECT_NE(AdviceForBudget(scene, 1e-9).find("times as long"), std::string::npos);
+}
+
+TEST_F(UserScene, IsAdvisedTargetsToo) {
+    const std::string file = (folder_ / "stack.json").string();
+    ASSERT_TRUE(WriteScene(file, Stack()));
+    const auto command = ParseLabCommand({"advise", file, "--error", "1%"});
+    ASSERT_TRUE(command) << command.GetError().message;
+    EXPECT_TRUE(command.Value().lab.advises);
+    const auto isTarget = [](const Setting& setting) { return setting.family == Family::Target; };
+    EXPECT_TRUE(std::ranges::any_of(AdviceGrid({.contacts = true}), isTarget));
+    EXPECT_FALSE(std::ranges::any_of(AdviceGrid({}), isTarget));
+    // The scene has no target of its own: sinks fall with the square of the substeps that one asks for.
+    LabOptions lab = command.Value().lab;
+    lab.settings = {Setting{}, {.family = Family::Target, .target = 0.0005f}};
+    const std::vector<RunRecord> runs = Run(lab);
+    ASSERT_EQ(runs.size(), 2u);
+    EXPECT_LT(runs[1].Error(), 0.5 * runs[0].Error());
+    EXPECT_GT(runs[1].traversals, 1.3 * runs[0].traversals);
+    const std::string advice = AdviceForError({lab.scenes[0], runs}, runs[1].Error());
+    EXPECT_NE(advice.find("settings.accuracy = {.penetration = 0.0005f, .jointError = 0.0005f};"), std::string::npos)
+        << advice;
 }
 
 TEST_F(UserScene, OfTheSamplesErrsLessWithMoreSubsteps) {

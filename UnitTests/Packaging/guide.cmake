@@ -1,6 +1,11 @@
 include(${CMAKE_CURRENT_LIST_DIR}/Common.cmake)
 find_program(NODE NAMES node nodejs REQUIRED)
-run(${NODE} ${CMAKE_CURRENT_LIST_DIR}/snippets.mjs ${FULCRUM_SOURCE} ${WORK}/snippets)
+run(${CMAKE_COMMAND} --install ${FULCRUM_BUILD} --prefix ${WORK}/prefix)
+set(assets --without-assets)
+if(EXISTS ${WORK}/prefix/include/Fulcrum/Assets/SceneFile.h)
+  set(assets)
+endif()
+run(${NODE} ${CMAKE_CURRENT_LIST_DIR}/snippets.mjs ${FULCRUM_SOURCE} ${WORK}/snippets ${assets})
 
 # The program of README.md is the one that the other tests compile.
 file(READ ${WORK}/snippets/readme.cpp readme)
@@ -9,7 +14,6 @@ if(NOT readme STREQUAL consumer)
   message(FATAL_ERROR "README.md has another program than UnitTests/Packaging/Consumer/main.cpp")
 endif()
 
-run(${CMAKE_COMMAND} --install ${FULCRUM_BUILD} --prefix ${WORK}/prefix)
 configure(${CMAKE_CURRENT_LIST_DIR}/Guide ${WORK}/build "${strict}" -DCMAKE_PREFIX_PATH=${WORK}/prefix
   -DSNIPPETS=${WORK}/snippets)
 run(${CMAKE_COMMAND} --build ${WORK}/build)

@@ -64,7 +64,7 @@ ShapePtr SheetOf(bool twoSided) {
     return TriangleMesh::Create({.vertices = corners, .indices = indices, .isTwoSided = twoSided}).Value();
 }
 
-// accuracy.md's gate `bullet`: 10^4 aims for each speed and thickness.
+// 10^4 aims for each speed and thickness.
 TEST(Continuous, NoBulletTunnelsThroughAThinWall) {
     constexpr int kShots = 10000;
     for (const float thickness : {0.1f, 0.01f})

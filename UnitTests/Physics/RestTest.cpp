@@ -59,7 +59,7 @@ TEST(Rest, PyramidsStopCreepingAndFallAsleep) {
         TestWorld world(NoSleep());
         const std::vector<BodyId> bodies = AddPyramid(world, layers, gap);
         world.Run(8);
-        EXPECT_LT(FastestInASecond(world, bodies), 1e-3) << gap;
+        EXPECT_LT(FastestInASecond(world, bodies), 2e-4) << gap;
         TestWorld sleepy;
         const std::vector<BodyId> sleepers = AddPyramid(sleepy, layers, gap);
         sleepy.Run(5);
@@ -84,7 +84,7 @@ TEST(Rest, FlatPyramidsRestAtEveryEffortAndSinkByItsSquare) {
         TestWorld world(settings);
         const std::vector<BodyId> bodies = AddFlatPyramid(world, kLayers);
         world.Run(6);
-        EXPECT_LT(FastestInASecond(world, bodies), substeps <= 2 ? 1e-2 : 1e-3) << effort;
+        EXPECT_LT(FastestInASecond(world, bodies), 1e-4) << effort;
         const double passes = velocityIterations + positionIterations,
                      sink = kLayers - 0.5 - world.PositionOf(bodies.back()).y();
         EXPECT_NEAR(sink * substeps * substeps * passes, kUsual, 0.25 * kUsual) << effort;
@@ -154,6 +154,54 @@ TEST(Rest, AForceAcceleratesABoxWithOthersOnTopByTheFormula) {
     }
 }
 
+// What rests is damped while it decelerates (Docs/Step.md): slow sliding and rolling, and what is weightless, is not.
+TEST(Rest, SlowMotionThatDoesNotSwingGoesOn) {
+    TestWorld world(NoSleep());
+    world.AddFloor({.friction = 0});
+    std::vector<BodyId> boxes;
+    for (const float speed : {0.06f, 0.03f})
+        boxes.push_back(world.Add({.shape = CubeOf(0.5f),
+                                   .position = {0, 0.5, 100 * double{speed}},
+                                   .linearVelocity = {speed, 0, 0},
+                                   .material = {.friction = 0}}));
+    world.Run(5);
+    EXPECT_NEAR(world.VelocityOf(boxes[0]).x(), 0.06f, 1e-5f);
+    EXPECT_NEAR(world.VelocityOf(boxes[1]).x(), 0.03f, 1e-5f);
+
+    // Down a slope of 0.1 degrees: a = 5/7 g sin.
+    SystemSettings settings = NoSleep();
+    settings.gravity = Vector3(static_cast<float>(kGravity * std::sin(0.1 * kDegree)),
+                               static_cast<float>(-kGravity * std::cos(0.1 * kDegree)), 0);
+    TestWorld slope(settings);
+    slope.AddFloor();
+    const BodyId ball = slope.Add({.shape = SphereOf(0.5f), .position = {0, 0.5, 0}});
+    slope.Run(3);
+    const double expected = 5.0 / 7 * kGravity * std::sin(0.1 * kDegree) * 3;
+    EXPECT_NEAR(slope.VelocityOf(ball).x(), expected, 0.01 * expected);
+
+    settings.gravity = Vector3::Zero();
+    TestWorld space(settings);
+    BodyId pair[2];
+    for (int i = 0; i < 2; ++i)
+        pair[i] = space.Add({.shape = CubeOf(0.5f), .position = {0, double(i), 0}, .linearVelocity = {0.03f, 0, 0}});
+    space.Run(5);
+    for (const BodyId id : pair) EXPECT_NEAR(space.VelocityOf(id).x(), 0.03f, 1e-6f);
+}
+
+// A stack that must stay awake comes to rest like one that may sleep.
+TEST(Rest, AStackThatMayNotSleepStopsSwaying) {
+    TestWorld world;
+    world.AddFloor();
+    std::vector<BodyId> stack;
+    for (int i = 0; i < 10; ++i)
+        stack.push_back(world.Add({.shape = CubeOf(0.5f),
+                                   .position = {0.01 * (i * 7 % 3 - 1), 0.5 + i, 0.01 * (i * 5 % 3 - 1)},
+                                   .allowSleep = false}));
+    world.Run(5);
+    EXPECT_FALSE(AllAsleep(world, stack));
+    EXPECT_LT(FastestInASecond(world, stack), 1e-4);
+}
+
 // What a heavy load has pressed down comes back to its place, and no farther.
 TEST(Rest, WhatALoadLeavesRisesNoHigherThanItsPlace) {
     for (const int substeps : {4, 16}) {
@@ -186,7 +234,7 @@ TEST(Rest, AStackOutOfLineStandsWhileStepsAlternate) {
     for (const int substeps : {4, 16})
         for (const Case& steps :
              {Case{1.0 / 240, 1.0 / 30, 1}, Case{1.0 / 60, 1.0 / 30, 1}, Case{1.0 / 240, 1.0 / 30, 30}})
-            for (const int boxes : {6, 10, 20}) {
+            for (const int boxes : {6, 10, 20}) {  // so long that what grows from block to block shows
                 SystemSettings settings = NoSleep();
                 settings.solver.substeps = substeps;
                 TestWorld world(settings);
@@ -197,10 +245,12 @@ TEST(Rest, AStackOutOfLineStandsWhileStepsAlternate) {
                     starts.push_back({0.01 * (i * 7 % 3 - 1), 0.5 + i, 0.01 * (i * 5 % 3 - 1)});
                     stack.push_back(world.Add({.shape = CubeOf(0.5f), .position = starts.back()}));
                 }
-                for (int i = 0; i < 600; ++i) world.Step(i / steps.each % 2 == 0 ? steps.shorter : steps.longer);
+                for (int i = 0; i < (kIsSanitized ? 300 : 1800); ++i)
+                    world.Step(i / steps.each % 2 == 0 ? steps.shorter : steps.longer);
                 for (size_t i = 0; i < stack.size(); ++i)
                     EXPECT_LT((world.PositionOf(stack[i]) - starts[i]).norm(), 0.02)
-                        << substeps << " substeps, " << boxes << " boxes, " << steps.longer << " s, " << i;
+                        << substeps << " substeps, " << boxes << " boxes, " << steps.longer << " s, each " << steps.each
+                        << ", " << i;
             }
 }
 

@@ -60,7 +60,7 @@ BodyId AddGround(TestWorld& world, const ShapePtr& shape, float friction = 0.5f,
         {.shape = shape, .motion = MotionType::Static, .position = position, .material = {.friction = friction}});
 }
 
-// accuracy.md's gate: a cube of 0.2 m that slides without friction at 3 m/s hardly notices what it slides over.
+// A cube of 0.2 m that slides without friction at 3 m/s hardly notices what it slides over.
 void SlidesOver(TestWorld& world, float angle) {
     const Vector3 along(std::cos(angle), 0, std::sin(angle));
     const BodyId cube = world.Add({.shape = CubeOf(0.1f),

@@ -157,7 +157,6 @@ TEST(ContinuousEnergy, AHitOfASpinningRodKeepsIt) {
     }
 }
 
-// Standing on its end, tilted: it hits the floor with nothing that moves, and falls as one that is not cast does.
 // Where an axis is locked gravity gives no speed along it, and a push along it moves nothing: a normal that was off it
 // by 3e-7 had all of the approach taken along the other axes, and threw a body of 1.2 t at 95 m/s off at 1000 m/s.
 TEST(ContinuousEnergy, AHitAcrossLockedAxesThrowsNothing) {
@@ -191,6 +190,7 @@ TEST(ContinuousEnergy, AHitAcrossLockedAxesThrowsNothing) {
     }
 }
 
+// Standing on its end, tilted: it hits the floor with nothing that moves, and falls as one that is not cast does.
 TEST(ContinuousEnergy, ARodThatTopplesFallsAsWithoutIt) {
     const auto tiltAfterASecond = [](ContinuousCollision kind) {
         TestWorld world;

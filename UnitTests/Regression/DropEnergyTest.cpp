@@ -40,7 +40,7 @@ TEST_P(DropEnergy, IsNeverMoreThanAtFirst) {
         ExpectNoGain(GetParam(), substeps, 1.0 / 60, kIsSanitized ? 2 : 15, kIsSanitized ? 1 : 2);
 }
 
-// The gate of a thousand of each; minutes.
+// A thousand of each; minutes.
 TEST_P(DropEnergy, DISABLED_OfAThousandIsNeverMoreThanAtFirst) {
     for (const int substeps : {1, 4, 16})
         for (const double dt : {1.0 / 30, 1.0 / 60, 1.0 / 240}) ExpectNoGain(GetParam(), substeps, dt, 1000, 3);

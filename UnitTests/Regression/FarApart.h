@@ -272,7 +272,12 @@ private:
         if (kind_ == Kind::Custom)
             return std::max(error, std::hypot(static_cast<double>(local.y()), static_cast<double>(local.z())));
         const Path& path = static_cast<const PathJoint*>(JointsOf(world_).GetType(joint_))->GetPath();
-        return std::max(error, static_cast<double>(Length(Vector3(path.Sample(path.Closest(local)).position - local))));
+        const PathSample at = path.Sample(path.Closest(local));
+        Vector3 away = local - at.position;
+        // A soft limit lets B run beyond the end of an open path, along its tangent.
+        if (!IsHard(JointsOf(world_).GetControl(joint_, JointAxis::LinearX)->limits.spring))
+            away -= at.tangent * Dot(away, at.tangent);
+        return std::max(error, static_cast<double>(Length(away)));
     }
 
     // What a step that began now would have: rows in the order of their type, and the rates of what they measure.

@@ -11,20 +11,22 @@ namespace {
 // the ground (Docs/Joints.md).
 constexpr double kLeftBehind = 5;  // J, of bodies of 0.4 and 1 t
 
-void ExpectAllToRecover(Kind kind, uint32_t count) {
-    for (uint32_t i = 0; i < count; ++i) {
-        SCOPED_TRACE(std::string(kNames[static_cast<size_t>(kind)]) + " " + std::to_string(i));
-        const Case how = CaseOf(i);
-        const Recovery result = FarApart(kind, how, 1000003u * static_cast<uint32_t>(kind) + i).Run();
-        EXPECT_TRUE(result.finite);
-        EXPECT_TRUE(result.together) << "apart by " << result.apart;
-        EXPECT_LT(result.fastest, kFastest);
-        const bool isJudged = how.isDriven ? !how.hasFloor && how.settings.solver.substeps == 1
-                                           : !how.hasFloor || kind != Kind::RackAndPinion;
-        if (isJudged) {
-            EXPECT_LT(result.gained, kLeftBehind) << "of " << result.energy;
-        }
+void ExpectToRecover(Kind kind, uint32_t i) {
+    SCOPED_TRACE(std::string(kNames[static_cast<size_t>(kind)]) + " " + std::to_string(i));
+    const Case how = CaseOf(i);
+    const Recovery result = FarApart(kind, how, 1000003u * static_cast<uint32_t>(kind) + i).Run();
+    EXPECT_TRUE(result.finite);
+    EXPECT_TRUE(result.together) << "apart by " << result.apart;
+    EXPECT_LT(result.fastest, kFastest);
+    const bool isJudged = how.isDriven ? !how.hasFloor && how.settings.solver.substeps == 1
+                                       : !how.hasFloor || kind != Kind::RackAndPinion;
+    if (isJudged) {
+        EXPECT_LT(result.gained, kLeftBehind) << "of " << result.energy;
     }
+}
+
+void ExpectAllToRecover(Kind kind, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) ExpectToRecover(kind, i);
 }
 
 class JointsFarApart : public ::testing::TestWithParam<int> {};
@@ -35,6 +37,12 @@ TEST_P(JointsFarApart, ComeTogetherWithoutAnExplosion) { ExpectAllToRecover(stat
 // A quarter of an hour for all kinds.
 TEST_P(JointsFarApart, DISABLED_TenThousandComeTogetherWithoutAnExplosion) {
     ExpectAllToRecover(static_cast<Kind>(GetParam()), 10000);
+}
+
+// As B came near a curved path, its rotation was pulled, which moved it away again, where its rotation was free: it
+// never arrived. Or its rotation was pulled about the wrong axis.
+TEST(PathsFarApart, ComeTogetherWhereTheirRotationMovesThemAway) {
+    for (const uint32_t i : {2099u, 2147u, 3467u, 3879u, 3901u, 4179u}) ExpectToRecover(Kind::Path, i);
 }
 
 }  // namespace

@@ -48,7 +48,6 @@ TEST(QueriesAtExtremes, AnOddRayDoesNotSpoilItsBatch) {
     }
 }
 
-// A fraction may be larger than one: the list of all hits ended at one for meshes and height fields.
 // Bounds are measured from the first body. From 10^17 m away doubles told nothing near zero apart, and rays passed by
 // what they hit.
 TEST(QueriesAtExtremes, AFirstBodyFarAwayHidesNothing) {
@@ -75,6 +74,7 @@ TEST(QueriesAtExtremes, AFirstBodyFarAwayHidesNothing) {
     }
 }
 
+// A fraction may be larger than one: the list of all hits ended at one for meshes and height fields.
 TEST(QueriesAtExtremes, AllHitsAreListedUpToTheFractionThatIsAskedFor) {
     const float heights[] = {0, 0, 0, 0};
     const Vector3 corners[] = {{-5, 0, -5}, {-5, 0, 5}, {5, 0, -5}};

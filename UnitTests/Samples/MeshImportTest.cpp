@@ -62,6 +62,22 @@ std::string ObjBox(const std::string& name, const Position& lowest, const Positi
     return text.str();
 }
 
+// The meshes that ./fulcrum drop can be tried with.
+TEST(SampleMeshes, TheTeapotIsSeventeenConvexPartsAndTheFountainOneClosedSurface) {
+    const fs::path folder = fs::path(FULCRUM_SOURCE_DIR) / "Samples" / "Meshes";
+    const auto teapot = ImportShape(folder / "teapot.obj", 1);
+    ASSERT_TRUE(teapot) << teapot.GetError().message;
+    EXPECT_EQ(teapot.Value().hulls, 17u);
+    EXPECT_TRUE(teapot.Value().warnings.empty()) << teapot.Value().warnings.front();
+    const Bounds box = teapot.Value().shape->LocalBounds();
+    EXPECT_NEAR(box.upper.x() - box.lower.x(), 1, 1e-3);
+    const auto fountain = ImportMesh(folder / "fountain.obj");
+    ASSERT_TRUE(fountain) << fountain.GetError().message;
+    EXPECT_FALSE(fountain.Value().isTwoSided);
+    EXPECT_EQ(fountain.Value().report.boundaryEdges, 0u);
+    EXPECT_EQ(fountain.Value().report.irregularEdges, 0u);
+}
+
 TEST_F(MeshFiles, ACubeBecomesAHullOf8VerticesAnd1m) {
     const auto read = ImportShape(Write("cube.obj", ObjBox("cube", {10, 10, 10}, {14, 14, 14}, 0)), 1);
     ASSERT_TRUE(read) << read.GetError().message;

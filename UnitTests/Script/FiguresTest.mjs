@@ -32,8 +32,8 @@ test('the documents of this tree agree with the JSON', () => {
 });
 
 test('a figure that was edited in a document is found, and mended', () => {
-  for (const name of ['README.md', 'Docs/Performance.md']) {
-    change(name, '| `drum` | ', '| `drum` | 1');
+  for (const [name, from, to] of [['Docs/Performance.md', '| `drum` | ', '| `drum` | 1'], ['Docs/drawings/speed.svg', '>drum<', '>drums<']]) {
+    change(name, from, to);
     const { status, stderr } = figures(copy, '--check');
     assert.equal(status, 1);
     assert.match(stderr, new RegExp(`^${name}:\\d+ does not say what Docs/figures.json says`));
@@ -43,17 +43,18 @@ test('a figure that was edited in a document is found, and mended', () => {
   }
 });
 
-test('a figure that was edited in the JSON is found, in both documents', () => {
+test('a figure that was edited in the JSON is found, in the tables and the picture', () => {
   const json = JSON.parse(read('Docs/figures.json'));
   const drum = json.scenes.find(({ name }) => name === 'drum');
   drum.threads[1] = { ...drum.threads[1], ms: 77.7, ratio: 0.777 };
   writeFileSync(file('Docs/figures.json'), JSON.stringify(json));
   const { status, stderr } = figures(copy, '--check');
   assert.equal(status, 1);
-  assert.match(stderr, /README\.md/);
+  assert.match(stderr, /Docs\/drawings\/speed\.svg/);
   assert.match(stderr, /Docs\/Performance\.md/);
   assert.equal(figures(copy).status, 0);
-  for (const name of ['README.md', 'Docs/Performance.md']) assert.match(read(name), /drum.*77\.7/);
+  assert.match(read('Docs/Performance.md'), /drum.*77\.7/);
+  assert.match(read('Docs/drawings/speed.svg'), /drum<[\s\S]*>77\.7 ms</);
 });
 
 test('a mark that is lost or misspelt is an error', () => {
@@ -77,8 +78,8 @@ test('what the benchmark wrote is taken over', () => {
   const ten = { median_ms: 30, accuracy: 5, settings: { substeps: 1, velocity_iterations: 10, position_iterations: 2 } };
   const { status, stderr } = take([run('drum', 1), run('drum', 2, { median_ms: 6 }), run('drum', 1, ten)], { drum: 40 });
   assert.equal(status, 0, stderr);
-  const [readme, performance] = [read('README.md'), read('Docs/Performance.md')];
-  assert.match(readme, /`drum` \|.*\| 10\.0 \| 0\.250 \| 2 through the wall \|/);
+  const [picture, performance] = [read('Docs/drawings/speed.svg'), read('Docs/Performance.md')];
+  assert.match(picture, /drum<[^]*?>10\.0 ms<[^]*?>Bullet 40 ms<[^]*?>2 through the wall</);
   assert.match(performance, /`drum` \|.*\| 10\.0 \| 6\.00 \| 0\.250 \| 0\.150 \|.*\| 2 through the wall \|/);
   assert.match(performance, /`drum` \| 1 \| – \| – \| – \| – \| – \| – \| 4\.00 \| – \| – \| 10\.0 \|/);
   assert.match(performance, /`drum` \| 0\.250, 0\.150; 2 through the wall \| 0\.750, 0\.\d+; 5 through the wall/);
@@ -110,7 +111,7 @@ test('a figure that is the median of several runs is not taken from one', () => 
   assert.equal(status, 1);
   assert.match(stderr, /ragdolls: its accuracy figure is the median of 8 runs/);
   assert.equal(take([run('ragdolls', 1, { accuracy: 0.0155, accuracy_of_runs: Array(8).fill(0.0155) })], { ragdolls: 10 }).status, 0);
-  assert.match(read('README.md'), /`ragdolls`.*16 mm/);
+  assert.match(read('Docs/drawings/speed.svg'), /ragdolls<[^]*?>largest gap 16 mm</);
 });
 
 test('what has no place is refused, and nothing is written', () => {

@@ -3,12 +3,13 @@
 import { Color, InstancedBufferAttribute, InstancedMesh, Matrix4, MeshStandardMaterial, Quaternion, Sphere, Vector3 } from 'three';
 import { SELECTED, colorOf } from './colors.js';
 import { Glass, SENSOR } from './glass.js';
+import { BRASS, GLASS } from './looks.js';
 import { isAlwaysTheSame } from './presence.js';
 import { GeometryChoice, halfBounds, leavesOf } from './shapes.js';
-import { addBelts, addGrid, growSmall } from './shaders.js';
+import { OPAQUE } from './occlusion.js';
+import { addBelts, addGrid, addOcclusion, growSmall } from './shaders.js';
 
 const RESTING_WITH_SHADOW_AT_MOST = 30000;
-const BRASS = 4; // of the looks
 const UNTURNED = new Quaternion();
 
 export class Bodies {
@@ -17,9 +18,11 @@ export class Bodies {
     this.timeline = timeline;
     this.selected = -1;
     this.material = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: 0.58, metalness: 0.02 }), stage.least);
-    this.brass = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: stage.isFine ? 0.32 : 0.45, metalness: stage.isFine ? 0.75 : 0.15, envMapIntensity: 1.6 }), stage.least);
+    this.brass = growSmall(new MeshStandardMaterial({ vertexColors: true, roughness: stage.isFine ? 0.28 : 0.45, metalness: stage.isFine ? 0.7 : 0.15, envMapIntensity: 2.5 }), stage.least);
     this.fixedMaterial = addBelts(addGrid(new MeshStandardMaterial({ vertexColors: true, roughness: 0.95 }), stage.grid), stage.clock);
     this.drivenMaterial = new MeshStandardMaterial({ vertexColors: true, roughness: 0.7 });
+    for (const material of [this.material, this.brass, this.fixedMaterial, this.drivenMaterial]) addOcclusion(material, stage.occlusion);
+    this.pane = new MeshStandardMaterial({ vertexColors: true, roughness: 0.08, transparent: true, opacity: 0.42, depthWrite: false });
     this.glass = new Glass(stage);
     this.meshes = this.#build();
     for (const { mesh, motion } of this.meshes) {
@@ -37,7 +40,12 @@ export class Bodies {
       material.depthWrite = isSolid;
       material.needsUpdate = true;
     }
-    for (const group of this.meshes) if (group.motion < 2) group.mesh.castShadow = isSolid && group.castsShadow;
+    for (const { mesh, motion, isOpaque, castsShadow } of this.meshes) {
+      if (motion >= 2) continue;
+      mesh.castShadow = isSolid && castsShadow;
+      if (isSolid && isOpaque) mesh.layers.enable(OPAQUE);
+      else mesh.layers.disable(OPAQUE);
+    }
   }
 
   update(mode, top) {
@@ -84,7 +92,9 @@ export class Bodies {
             const chosen = look?.teeth > 0 ? choice.of(leaf.shape, isSharp, look) : (known[wanted] ??= choice.of(leaf.shape, isSharp));
             choiceOf.set(leaf, known);
             const byKey = groups.get(chosen.key) ?? groups.set(chosen.key, new Map()).get(chosen.key);
-            const group = byKey.get(motion) ?? byKey.set(motion, { motion, make: chosen.make, leaves: [], moving: 0 }).get(motion);
+            // What shines or is seen through has a material, so a mesh, of its own.
+            const special = [BRASS, GLASS].includes(look?.look) && motion !== SENSOR ? look.look : 0, kind = `${motion} ${special}`;
+            const group = byKey.get(kind) ?? byKey.set(kind, { motion, special, make: chosen.make, leaves: [], moving: 0 }).get(kind);
             group.leaves.push({ body, presence, shape: leaf.shape, position: leaf.position, rotation: leaf.rotation, scale: chosen.scale });
             group.moving += moving;
           }
@@ -95,15 +105,22 @@ export class Bodies {
   }
 
   #addMesh(group) {
-    const isBrass = group.motion === 2 && group.leaves.every(({ body }) => this.recording.lookOf.get(body)?.look === BRASS);
-    const material = isBrass ? this.brass : [this.fixedMaterial, this.drivenMaterial, this.material, this.glass.material][group.motion];
+    const material = { [BRASS]: this.brass, [GLASS]: this.pane }[group.special] ??
+      [this.fixedMaterial, this.drivenMaterial, this.material, this.glass.material][group.motion];
+    const isOpaque = group.motion !== SENSOR && group.special !== GLASS;
     const mesh = new InstancedMesh(group.make(), material, group.leaves.length);
-    if (group.motion === 2) mesh.geometry.setAttribute('halfSize', this.#halfSizes(group.leaves));
-    if (group.motion === 0) this.#setBelts(mesh.geometry, group.leaves);
+    if (group.motion === 2 || group.special === BRASS) mesh.geometry.setAttribute('halfSize', this.#halfSizes(group.leaves));
+    if (group.motion === 0) {
+      this.#setBelts(mesh.geometry, group.leaves);
+      const slope = new Float32Array(group.leaves.map(({ shape }) => Number(shape.kind === 'box' || shape.triangles?.length <= 4)));
+      mesh.geometry.setAttribute('gridSlope', new InstancedBufferAttribute(slope, 1));
+    }
     // Of very many bodies at rest, the shadows would cost as much as the bodies.
-    group.castsShadow = group.motion !== SENSOR && (group.moving > 0 || group.leaves.length < RESTING_WITH_SHADOW_AT_MOST);
+    group.castsShadow = isOpaque && (group.moving > 0 || group.leaves.length < RESTING_WITH_SHADOW_AT_MOST);
     mesh.castShadow = group.castsShadow;
     mesh.receiveShadow = group.motion !== SENSOR;
+    group.isOpaque = isOpaque;
+    if (isOpaque) mesh.layers.enable(OPAQUE);
     mesh.frustumCulled = false;
     mesh.boundingSphere = new Sphere(new Vector3(), Infinity); // picking asks each instance
     mesh.setColorAt(0, new Color());

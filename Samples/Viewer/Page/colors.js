@@ -2,25 +2,33 @@
 import { Color } from 'three';
 import { lookColor } from './looks.js';
 
-const PLAIN = ['#6c9bd0', '#e2a35c', '#73b58a', '#c98aa8', '#9a8fd0'].map((hex) => new Color(hex));
-const ISLANDS = ['#4f8fd8', '#e8935a', '#58b07c', '#d66a6a', '#8d7bd0', '#dcb345', '#45b0b8', '#d07fb0']
-  .map((hex) => new Color(hex));
+// The same number for the same id, with neighboring ids far apart: the fractions of the golden ratio.
+const scattered = (id) => (id * 0.6180339887498949) % 1;
+
+const VARIANTS = 16;
+// Of one color: neighbors are told apart by a little light and tone. `hue`: by how much of a turn at most, half of it to each side.
+function variantsOf(hex, hue) {
+  return Array.from({ length: VARIANTS }, (_, i) => {
+    const light = scattered(i + 1) - 0.5, turn = scattered(5 * i + 2) - 0.5;
+    return new Color(hex).offsetHSL(hue * turn, 0.04 * turn, 0.13 * light);
+  });
+}
+const PLAIN = ['#4f86d9', '#ef9f4a', '#52b080', '#de6f8d', '#8a78dd'].map((hex) => variantsOf(hex, 0.055));
+const ISLANDS = ['#4484dc', '#ef8d4f', '#4fb178', '#df6464', '#8a74dc', '#e3b53c', '#3fb3bd', '#d77bb5'].map((hex) => variantsOf(hex, 0.03));
 const SPEEDS = ['#86a3c8', '#4fa3cc', '#4fb890', '#dccb4c', '#f0963a', '#d63c2c'].map((hex) => new Color(hex));
-const ALONE = new Color('#aab2ba');
-const FIXED = new Color('#d3d9de'), DRIVEN = new Color('#9aa7b4');
+const ALONE = variantsOf('#aab2ba', 0);
+const FIXED = new Color(), DRIVEN = new Color();
 const GLASS = new Color('#3aa7c2');
-const AWAKE = new Color('#f0ab6b');
-const ASLEEP = new Color('#7d93aa');
-const FIXED_OF = { light: '#d3d9de', dark: '#414a54' }, DRIVEN_OF = { light: '#9aa7b4', dark: '#6d7a88' };
+const AWAKE = variantsOf('#f2a45c', 0.03);
+const ASLEEP = variantsOf('#7d93aa', 0.03);
+export const GROUND = { light: '#d9dcde', dark: '#4a545f' };
+const DRIVEN_OF = { light: '#9aa7b4', dark: '#6d7a88' };
 // Of what does not move by itself; colors of bodies that do are the same by day and night.
 export function setTheme(theme) {
-  FIXED.set(FIXED_OF[theme]);
+  FIXED.set(GROUND[theme]);
   DRIVEN.set(DRIVEN_OF[theme]);
 }
 export const SELECTED = new Color('#ff4d1c');
-
-// The same number for the same id, with neighboring ids far apart: the fractions of the golden ratio.
-const scattered = (id) => (id * 0.6180339887498949) % 1;
 
 function ramp(colors, fraction, out) {
   const at = Math.min(1, Math.max(0, fraction)) * (colors.length - 1);
@@ -28,8 +36,7 @@ function ramp(colors, fraction, out) {
   return out.lerpColors(colors[low], colors[low + 1], at - low);
 }
 
-// Neighbors of one color are told apart by a little light.
-const shade = (color, body) => color.multiplyScalar(0.86 + 0.26 * scattered(body + 1));
+const variant = (variants, body) => variants[Math.floor(VARIANTS * scattered(body + 1))];
 
 // The speed that the scale ends at: 99 % of the moving samples are slower.
 export function topSpeed({ samples }) {
@@ -46,13 +53,13 @@ export function topSpeed({ samples }) {
 }
 
 const byMode = {
-  plain: (timeline, body, recording, top, out) => shade(out.copy(PLAIN[recording.bodies.shapes[body] % PLAIN.length]), body),
+  plain: (timeline, body, recording, top, out) => out.copy(variant(PLAIN[recording.bodies.shapes[body] % PLAIN.length], body)),
   island: (timeline, body, recording, top, out) => {
     const island = timeline.island(body);
-    return shade(out.copy(island < 0 ? ALONE : ISLANDS[Math.floor(scattered(island + 1) * ISLANDS.length)]), body);
+    return out.copy(variant(island < 0 ? ALONE : ISLANDS[Math.floor(scattered(island + 1) * ISLANDS.length)], body));
   },
   speed: (timeline, body, recording, top, out) => ramp(SPEEDS, timeline.speed(body) / top, out),
-  awake: (timeline, body, recording, top, out) => shade(out.copy(timeline.isAwake(body) ? AWAKE : ASLEEP), body),
+  awake: (timeline, body, recording, top, out) => out.copy(variant(timeline.isAwake(body) ? AWAKE : ASLEEP, body)),
 };
 export const MODES = Object.keys(byMode);
 
@@ -68,7 +75,7 @@ export function colorOf(mode, timeline, body, top, out) {
   return byMode[mode](timeline, body, recording, top, out);
 }
 
-const key = (color, text) => `<div class="key"><i style="background:#${color.getHexString()}"></i>${text}</div>`;
+const key = ([color], text) => `<div class="key"><i style="background:#${color.getHexString()}"></i>${text}</div>`;
 
 export function legend(mode, top) {
   if (mode === 'speed') {

@@ -1,8 +1,9 @@
 // What materials look like, in the order of Look (Samples/Scenes/SceneView.h), and the teeth of gears.
 import { Color, ExtrudeGeometry, Shape } from 'three';
 
-const LOOKS = [null, '#7fae55', '#cfe8f4', '#4b4d57', '#cfa552', '#c09a6b', '#b9b3a8', '#454b54'].map((hex) => hex && new Color(hex));
+const LOOKS = [null, '#8dae66', '#cfe8f4', '#4b4d57', '#cfa552', '#c09a6b', '#b9b3a8', '#454b54', '#a4d4e0'].map((hex) => hex && new Color(hex));
 const WHITE = new Color('#ffffff');
+export const BRASS = 4, GLASS = 8; // with materials of their own
 
 // The color of a body's material or of its surface's, undefined where it has none. A surface of several is painted itself.
 export function lookColor(recording, body, shape) {
@@ -29,5 +30,9 @@ export function gearGeometry(vertices, teeth, phase) {
   const bore = new Shape();
   bore.absarc(0, 0, 0.18 * radius, 0, 2 * Math.PI, true);
   outline.holes.push(bore);
-  return new ExtrudeGeometry(outline, { depth: 2 * half, bevelEnabled: false, curveSegments: 24 }).translate(0, 0, -half);
+  // Its edges are beveled, so that they catch the light.
+  const bevel = Math.min(0.12 * module, 0.2 * half);
+  return new ExtrudeGeometry(outline, {
+    depth: 2 * (half - bevel), curveSegments: 24, bevelThickness: bevel, bevelSize: bevel, bevelOffset: -bevel, bevelSegments: 1,
+  }).translate(0, 0, bevel - half);
 }

@@ -1,7 +1,8 @@
 // Puts the page together: unpacks the recording, shows it as the address says, and gives scripts a handle.
 //
 // The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&color=island&body=7&joints=1&drawings=1&labels=1&contacts=1&
-// normals=1&bounds=1&grid=1&solid=1&theme=dark&loop=1&follow=1&fine=1&bare=1. The frame may be `picture`, the one that the scene chose.
+// normals=1&bounds=1&grid=1&solid=1&theme=dark&loop=1&follow=1&fine=1&occlusion=1&bare=1. The frame may be `picture`, the one that the
+// scene chose.
 // Scripts and tests use window.fulcrum, which is there once the page is ready.
 import { Controls } from './controls.js';
 import { unpack } from './decode.js';
@@ -63,7 +64,8 @@ async function start() {
   try {
     const recording = await unpack(element.textContent);
     element.remove();
-    const viewer = new Viewer(recording, wanted.has('fine') ? wanted.get('fine') === '1' : undefined);
+    const given = (name) => (wanted.has(name) ? wanted.get(name) === '1' : undefined);
+    const viewer = new Viewer(recording, given('fine'), given('occlusion'));
     new Controls(viewer);
     applyAddress(viewer, wanted);
     viewer.drawNow();

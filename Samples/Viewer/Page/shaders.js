@@ -1,5 +1,5 @@
-// Additions to three's standard material: a grid, belts that run, and a least size. Each changes the shader once; they can be
-// combined.
+// Additions to three's standard material: a grid, belts that run, a least size, ambient occlusion. Each changes the shader once; they
+// can be combined.
 
 function extend(material, change) {
   const before = material.onBeforeCompile;
@@ -12,21 +12,23 @@ function extend(material, change) {
   return material;
 }
 
-const PLACE_VARYINGS = '#include <common>\nvarying vec3 gridPlace; varying float gridUp;';
+const PLACE_VARYINGS = '#include <common>\nvarying vec3 gridPlace, gridNormal; varying float gridSlopes;';
 
-// Lines every `cell` meters, and stronger ones every ten cells, on what faces upwards.
+// Lines every `cell` meters, and stronger ones every ten cells, on what is level, and on slopes of instances whose attribute
+// `gridSlope` is 1.
 export function addGrid(material, grid) {
   return extend(material, (shader) => {
     Object.assign(shader.uniforms, grid);
     shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', PLACE_VARYINGS)
+      .replace('#include <common>', `${PLACE_VARYINGS} attribute float gridSlope;`)
       .replace('#include <project_vertex>', `#include <project_vertex>
         mat4 gridFrame = modelMatrix;
         #ifdef USE_INSTANCING
           gridFrame = gridFrame * instanceMatrix;
         #endif
         gridPlace = (gridFrame * vec4(transformed, 1.0)).xyz;
-        gridUp = normalize(mat3(gridFrame) * objectNormal).y;`);
+        gridSlopes = gridSlope;
+        gridNormal = normalize(mat3(gridFrame) * objectNormal);`);
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', `${PLACE_VARYINGS}
         uniform float gridCell, gridStrength;
@@ -38,10 +40,11 @@ export function addGrid(material, grid) {
           return (1.0 - min(min(far.x, far.y), 1.0)) * fade;
         }`)
       .replace('#include <color_fragment>', `#include <color_fragment>
-        if (gridUp > 0.99) {
-          vec2 place = gridPlace.xz / gridCell;
+        if (gridNormal.y > (gridSlopes > 0.5 ? 0.6 : 0.99)) {
+          vec3 across = normalize(cross(gridNormal, vec3(0.0, 0.0, 1.0)));
+          vec2 place = vec2(dot(gridPlace, across), dot(gridPlace, cross(across, gridNormal))) / gridCell;
           float line = max(0.5 * gridLine(place, 1.0), gridLine(place / 10.0, 1.3));
-          diffuseColor.rgb *= 1.0 - 0.3 * gridStrength * line;
+          diffuseColor.rgb *= 1.0 - 0.17 * gridStrength * line;
         }`);
   });
 }
@@ -80,7 +83,24 @@ export function growSmall(material, least) {
       .replace('#include <begin_vertex>', `#include <begin_vertex>
         #ifdef USE_INSTANCING
           float leastHalf = leastSize * max(0.0, -(modelViewMatrix * instanceMatrix * vec4(0.0, 0.0, 0.0, 1.0)).z);
-          transformed *= max(vec3(1.0), vec3(leastHalf) / max(halfSize, vec3(1e-6)));
+          // What has no size given keeps its own.
+          if (halfSize != vec3(0.0)) transformed *= max(vec3(1.0), vec3(leastHalf) / max(halfSize, vec3(1e-6)));
         #endif`);
+  });
+}
+
+// Takes from the light of all sides what the surroundings hide, where there is an Occlusion.
+export function addOcclusion(material, occlusion) {
+  if (!occlusion) return material;
+  return extend(material, (shader) => {
+    Object.assign(shader.uniforms, occlusion.uniforms);
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', `#include <common>
+        uniform sampler2D occlusionMap;
+        uniform vec2 occlusionPixel;`)
+      .replace('#include <aomap_fragment>', `#include <aomap_fragment>
+        float seenSky = texture2D(occlusionMap, gl_FragCoord.xy * occlusionPixel).r;
+        reflectedLight.indirectDiffuse *= seenSky;
+        reflectedLight.indirectSpecular *= seenSky;`);
   });
 }

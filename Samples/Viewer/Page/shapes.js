@@ -93,13 +93,28 @@ function paint(geometry, isRound, looks) {
   return flat;
 }
 
-function hullGeometry(shape) {
-  const geometry = new BufferGeometry();
-  const places = new Float32Array(9 * shape.triangles.length);
-  shape.triangles.forEach((triangle, i) => triangle.forEach((corner, k) => places.set(shape.vertices[corner], 9 * i + 3 * k)));
-  geometry.setAttribute('position', new BufferAttribute(places, 3));
-  geometry.computeVertexNormals(); // of unshared vertices: flat faces
-  return geometry;
+const CREASE = Math.cos((38 * Math.PI) / 180); // what bends by less is round
+
+// Faces meet in edges where they bend by more than the crease, and smoothly elsewhere: hills and teapots are round, crystals are not.
+function hullGeometry({ vertices, triangles }) {
+  const places = new Float32Array(9 * triangles.length), normals = new Float32Array(9 * triangles.length);
+  const corners = vertices.map((vertex) => new Vector3(...vertex)), around = vertices.map(() => []);
+  const edge = new Vector3();
+  // Twice the area long, so that large faces count for more.
+  const faces = triangles.map(([a, b, c], i) => {
+    const face = new Vector3().subVectors(corners[b], corners[a]).cross(edge.subVectors(corners[c], corners[a]));
+    for (const corner of [a, b, c]) around[corner].push(i);
+    return face;
+  });
+  const units = faces.map((face) => face.clone().normalize());
+  const sum = new Vector3();
+  triangles.forEach((triangle, i) => triangle.forEach((corner, k) => {
+    sum.set(0, 0, 0);
+    for (const other of around[corner]) if (units[other].dot(units[i]) >= CREASE) sum.add(faces[other]);
+    corners[corner].toArray(places, 9 * i + 3 * k);
+    sum.normalize().toArray(normals, 9 * i + 3 * k);
+  }));
+  return new BufferGeometry().setAttribute('position', new BufferAttribute(places, 3)).setAttribute('normal', new BufferAttribute(normals, 3));
 }
 
 // Says which geometry a leaf is drawn with: { key, scale, make }. Leaves of one key share what `make` returns.

@@ -6,6 +6,7 @@ import { includeLeaf, leavesOf, outerRadius } from './shapes.js';
 const MOMENTS = [0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1];
 const STRAYS = 0.01;   // of the places at either end of each axis
 const FAR_STRAY = 0.4; // of the others' extent: strays nearer than this are shown
+const MOST = 3000;     // bodies that are asked where they are: of more, evenly chosen ones
 const AMONG = 1.3;     // of the radius: what stands farther away from the middle is not meant
 
 // The range of values, without strays.
@@ -19,21 +20,27 @@ function rangeOf(lower, upper) {
   ];
 }
 
+// Widens `lower` and `upper` by a body as it stands.
+function includeBody({ bodies, shapes }, timeline, body, lower, upper) {
+  const place = new Vector3().fromArray(timeline.positions, 3 * body), turn = new Quaternion().fromArray(timeline.rotations, 4 * body).normalize();
+  const leafPlace = new Vector3(), leafTurn = new Quaternion(), scratch = new Vector3();
+  for (const { shape, position, rotation } of leavesOf(shapes, bodies.shapes[body])) {
+    leafPlace.copy(position).applyQuaternion(turn).add(place);
+    includeLeaf(shape, leafPlace, leafTurn.copy(turn).multiply(rotation), lower, upper, scratch);
+  }
+}
+
 // The box around all static bodies.
-function boundsOfGround({ bodies, shapes, isSensor }, timeline) {
+function boundsOfGround(recording, timeline) {
   const lower = new Vector3().setScalar(Infinity), upper = new Vector3().setScalar(-Infinity);
-  const place = new Vector3(), turn = new Quaternion(), leafPlace = new Vector3(), leafTurn = new Quaternion(), scratch = new Vector3();
-  bodies.motions.forEach((motion, body) => {
-    if (motion !== 0 || isSensor[body]) return;
-    place.fromArray(timeline.positions, 3 * body);
-    turn.fromArray(timeline.rotations, 4 * body).normalize();
-    for (const { shape, position, rotation } of leavesOf(shapes, bodies.shapes[body])) {
-      leafPlace.copy(position).applyQuaternion(turn).add(place);
-      includeLeaf(shape, leafPlace, leafTurn.copy(turn).multiply(rotation), lower, upper, scratch);
-    }
+  recording.bodies.motions.forEach((motion, body) => {
+    if (motion === 0 && !recording.isSensor[body]) includeBody(recording, timeline, body, lower, upper);
   });
   return { lower, upper };
 }
+
+// [x, y, z, 0] of a box, whose ranges are given.
+export const cornersOf = (ranges) => [0, 1, 2, 3, 4, 5, 6, 7].map((corner) => [...ranges.map((range, k) => range[(corner >> k) & 1]), 0]);
 
 // Those of the places that are over the ground; all, where they did not begin there.
 function keepOverGround(places, countAtStart, { lower, upper }) {
@@ -42,12 +49,15 @@ function keepOverGround(places, countAtStart, { lower, upper }) {
   return 2 * places.slice(0, countAtStart).filter(isOver).length > countAtStart ? over : places;
 }
 
-// { center, half, radius, lowest } in meters, `typical`: the radius of a body of middle size, and `from`, towards the camera.
+// { center, half, radius, lowest } in meters, the box of what the picture is about; `places`: [x, y, z, radius], balls that are to be in
+// the picture; `typical`: the radius of a body of middle size; `from`: towards the camera, undefined where the scene does not say.
 export function findSubject(recording, timeline) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
   const moving = recording.movers.filter((body) => motions[body] === 2);
-  const bodies = [moving, dynamic, [...motions.keys()]].find((list) => list.length > 0) ?? [];
+  const all = [moving, dynamic, [...motions.keys()]].find((list) => list.length > 0) ?? [];
+  const every = Math.ceil(all.length / MOST);
+  const bodies = all.filter((_, i) => i % every === 0 || i === all.length - 1);
   const radii = recording.shapes.map((_, index) => outerRadius(recording.shapes, index));
   const sizes = bodies.map((body) => radii[shapes[body]]).sort((a, b) => a - b);
   const typical = sizes[sizes.length >> 1] ?? 1;
@@ -69,15 +79,25 @@ export function findSubject(recording, timeline) {
   const mobile = frame(rangesOf(places));
   const isAmong = (body) => radii[shapes[body]] < mobile.radius &&
     Math.hypot(...placeOf(body).slice(0, 3).map((x, k) => x - mobile.center[k])) < AMONG * mobile.radius;
-  const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).map(placeOf);
-  let ranges = rangesOf(places.concat(standing));
+  const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).flatMap((body) => {
+    const lower = new Vector3().setScalar(Infinity), upper = new Vector3().setScalar(-Infinity);
+    includeBody(recording, timeline, body, lower, upper);
+    return Number.isFinite(lower.x) ? cornersOf(['x', 'y', 'z'].map((axis) => [lower[axis], upper[axis]])) : [];
+  });
+  const seen = places.concat(standing);
+  let ranges = rangesOf(seen), shown;
   const { lower, upper, from } = recording.view ?? {};
-  if (lower) ranges = [0, 1, 2].map((k) => [lower[k], upper[k]]);
-  return { ...frame(ranges), lowest: ranges[1][0], typical, from };
+  if (lower) {
+    ranges = [0, 1, 2].map((k) => [lower[k], upper[k]]);
+    shown = cornersOf(ranges);
+  } else {
+    shown = seen.filter((place) => ranges.every(([low, high], k) => place[k] + place[3] >= low && place[k] - place[3] <= high));
+  }
+  return { ...frame(ranges), lowest: ranges[1][0], places: shown, typical, from };
 }
 
-// The height of a ground without an end that contradicts nothing: that of a floor which nothing falls off, or, where nothing
-// static is below the subject, just under all that moves. Undefined where there is none.
+// The height of a ground without an end that contradicts nothing: that of a floor which nothing falls off, under what is static and
+// holds all that moves, or, where nothing static is below the subject, just under all that moves. Undefined where there is none.
 export function groundHeight(recording, timeline, subject) {
   const { motions, shapes } = recording.bodies, { samples } = recording;
   let lowestEver = Infinity;
@@ -95,7 +115,11 @@ export function groundHeight(recording, timeline, subject) {
       floor = Math.max(floor, timeline.positions[3 * body + 1] + shape.halfExtents[1]);
   });
   if (floor > -Infinity) return lowestEver > floor - 0.5 * subject.typical ? floor - 2e-3 * subject.radius : undefined;
-  if (hasGround || lowestEver < subject.lowest - 0.3 * subject.radius) return undefined;
+  if (hasGround) {
+    const { y } = boundsOfGround(recording, timeline).lower;
+    return y > -1e3 * subject.radius && lowestEver > y ? y : undefined;
+  }
+  if (lowestEver < subject.lowest - 0.3 * subject.radius) return undefined;
   return subject.lowest - 0.02 * subject.radius;
 }
 

@@ -12,19 +12,21 @@ import { VideoRecorder, savePicture } from './saving.js';
 import { Stage } from './stage.js';
 import { findSubject, groundHeight, isEnclosed } from './subject.js';
 import { Timeline } from './timeline.js';
+import { addWater } from './water.js';
 
 const element = (id) => document.getElementById(id);
 
 export class Viewer {
-  // `isFine`: as Stage.
-  constructor(recording, isFine) {
+  // `isFine`, `isOccluded`: as Stage.
+  constructor(recording, isFine, isOccluded) {
     this.recording = recording;
     this.timeline = new Timeline(recording);
     const subject = findSubject(recording, this.timeline);
-    this.stage = new Stage(element('canvas'), subject, isFine);
+    this.stage = new Stage(element('canvas'), subject, isFine, isOccluded);
     this.bodies = new Bodies(recording, this.timeline, this.stage);
     const ground = groundHeight(recording, this.timeline, subject);
     if (ground !== undefined) this.stage.addGround(ground);
+    if (recording.view?.water) addWater(this.stage, recording.view.water);
     this.contacts = new Contacts(recording, this.stage);
     this.boxes = new BoundingBoxes(recording, this.timeline, this.stage);
     this.joints = new Joints(recording, this.timeline, this.stage);
@@ -219,6 +221,6 @@ export class Viewer {
     const { frame, lastFrame, time } = this.timeline;
     const whole = Math.floor(frame);
     element('scrub').value = whole;
-    element('clock').textContent = `${time.toFixed(2)} s · frame ${whole} / ${lastFrame}`;
+    element('clock').innerHTML = `${time.toFixed(2)} s · <span>frame </span>${whole} / ${lastFrame}`;
   }
 }

@@ -10,13 +10,14 @@ const ARGUMENTS = [
 
 export const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', args: ARGUMENTS });
 
-// The page of a recording, at its first frame. What it complains of and what it asks for are added to the two lists.
-export async function openPage(browser, html, complaints = [], requests = []) {
+// The page of a recording, at its first frame. What it complains of and what it asks for are added to the two lists. `settings`: more
+// of its address.
+export async function openPage(browser, html, complaints = [], requests = [], settings = '') {
   const page = await browser.newPage({ viewport: { width: 640, height: 360 } }); // small: software draws it
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('request', (request) => requests.push(request.url()));
-  await page.goto(`${pathToFileURL(html)}#frame=0`);
+  await page.goto(`${pathToFileURL(html)}#frame=0&${settings}`);
   await page.waitForFunction(() => window.fulcrum, null, { timeout: 120000 });
   await page.evaluate(() => {
     // The page draws with the browser's next picture; the one after that has it.

@@ -90,6 +90,9 @@ private:
             if (b.Overlaps(box)) found(context, &id, 1);
         }
     }
+    void SearchNear(const Bounds&, const float& maxDistance, void* context, BatchFunction found) const override {
+        for (uint32_t id = 0; id < TriangleIdEnd() && maxDistance >= 0; ++id) found(context, &id, 1);
+    }
     void SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const override {
         for (uint32_t id = 0; id < TriangleIdEnd(); ++id) {
             SurfaceHit hit;

@@ -65,6 +65,14 @@ TEST(HeightField, LargeAndThinOnesAreSearchedExactly) {
     ExpectExactBoxes(*HeightField::Create(Waves(100, 100, 8).Settings()).Value(), 200, 40);
 }
 
+TEST(HeightField, FindsWhatIsNear) {
+    ExpectNearTriangles(*HeightField::Create(Waves(14, 21, 2).Settings()).Value(), 3000, 4);
+    const Samples samples = WithHoles(Waves(12, 19, 3), 3);
+    ExpectNearTriangles(*HeightField::Create(samples.Settings()).Value(), 3000, 4);
+    ExpectNearTriangles(*HeightField::Create(Waves(2, 400, 1).Settings()).Value(), 300, 40);
+    ExpectNearTriangles(*HeightField::Create(Waves(100, 100, 8).Settings()).Value(), 100, 40);
+}
+
 TEST(HeightField, StepsAreWithinHalfAStepOfWhatWasSet) {
     const Samples samples = Waves(20, 20, 5);
     HeightFieldSettings settings = samples.Settings();

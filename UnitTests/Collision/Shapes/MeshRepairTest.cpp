@@ -200,6 +200,7 @@ TEST(ScaledMesh, SharesDataAndSearchesExactly) {
         }
         ExpectExactBoxes(*scaled, 3000, 0.5f * scale.cwiseAbs().maxCoeff());
         ExpectExactRays(*scaled, 6000);
+        ExpectNearTriangles(*scaled, 600, 0.5f * scale.cwiseAbs().maxCoeff());
     }
 }
 

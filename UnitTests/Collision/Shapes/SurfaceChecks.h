@@ -38,6 +38,59 @@ inline void ExpectExactBoxes(const SurfaceShape& shape, int count, float largest
     EXPECT_GT(hits, static_cast<size_t>(count) / 4);
 }
 
+// Triangles whose boxes are within a distance of a box that is near or far away: all of them, and none twice, nor any
+// that is clearly farther away. With a distance that shrinks, the nearest is found.
+inline void ExpectNearTriangles(const SurfaceShape& shape, int count, float largest) {
+    std::vector<std::pair<uint32_t, Bounds>> boxes;
+    for (const TriangleView& triangle : AllTriangles(shape)) {
+        Bounds box;
+        for (const Vector3& vertex : triangle.vertices) box.Include(vertex);
+        boxes.emplace_back(triangle.id, box);
+    }
+    const auto distanceOf = [](const Bounds& a, const Bounds& b) {
+        const Vector3 gap = Vector3(a.lower - b.upper).cwiseMax(Vector3(b.lower - a.upper)).cwiseMax(0.0f);
+        return std::sqrt(Dot<double>(gap.cast<double>(), gap.cast<double>()));
+    };
+    SurfaceRandom random(13);
+    Bounds around = shape.LocalBounds();
+    const Vector3 margin = around.HalfExtents() + Vector3::Constant(largest);
+    around.lower -= margin;
+    around.upper += margin;
+    size_t hits = 0;
+    for (int i = 0; i < count; ++i) {
+        const Bounds box = RandomBox(random, around, random.Chance(0.3f) ? 0 : largest);
+        const float reach = random.Chance(0.2f) ? 0 : random.Between(0, 4 * largest);
+        std::vector<uint32_t> found;
+        shape.VisitTrianglesNear(box, reach, [&](uint32_t id) { found.push_back(id); });
+        std::sort(found.begin(), found.end());
+        ASSERT_EQ(std::adjacent_find(found.begin(), found.end()), found.end()) << i;
+        const double rounding = 1e-6 * (double{shape.OuterRadius()} + double{reach} + 10 * double{largest});
+        double nearest = 1e30, nearestFound = 1e30;
+        for (const auto& [id, bounds] : boxes) {
+            const double distance = distanceOf(bounds, box);
+            const bool isFound = std::binary_search(found.begin(), found.end(), id);
+            ASSERT_TRUE(isFound || distance > double{reach}) << i << " " << distance << " of " << reach;
+            ASSERT_TRUE(!isFound || distance <= double{reach} + rounding) << i << " " << distance << " of " << reach;
+            nearest = std::min(nearest, distance);
+        }
+        hits += found.size();
+        float shrinking = std::numeric_limits<float>::infinity();
+        size_t visited = 0;
+        shape.VisitTrianglesNear(box, shrinking, [&](uint32_t id) {
+            const auto at = std::lower_bound(boxes.begin(), boxes.end(), id,
+                                             [](const auto& entry, uint32_t which) { return entry.first < which; });
+            nearestFound = std::min(nearestFound, distanceOf(at->second, box));
+            shrinking = static_cast<float>(nearestFound);
+            ++visited;
+        });
+        ASSERT_NEAR(nearestFound, nearest, rounding) << i;
+        ASSERT_LT(visited, 40 + found.size() + boxes.size() / 4) << i;  // the rest is farther away
+        float none = -1;
+        shape.VisitTrianglesNear(box, none, [&](uint32_t) { FAIL() << i; });
+    }
+    EXPECT_GT(hits, static_cast<size_t>(count) / 4);
+}
+
 // From anywhere near the shape to anywhere; a third of them at a vertex or the middle of an edge, a third along an
 // axis.
 inline SurfaceRay RandomRay(SurfaceRandom& random, const SurfaceShape& shape, const std::vector<TriangleView>& all,

@@ -18,6 +18,12 @@ TEST(TriangleMesh, BoxQueriesAreExact) {
     ExpectExactBoxes(*MeshOf(Soup(300, 10, 2, 1)), 30000, 2);
 }
 
+TEST(TriangleMesh, FindsWhatIsNear) {
+    ExpectNearTriangles(*MeshOf(WavyTerrain(14, 3, 5)), 3000, 4);
+    ExpectNearTriangles(*MeshOf(BallOf(10, 16, 2)), 3000, 0.5f);
+    ExpectNearTriangles(*MeshOf(Soup(300, 10, 2, 1)), 3000, 2);
+}
+
 TEST(TriangleMesh, RayCastsAreExact) {
     ExpectExactRays(*MeshOf(WavyTerrain(14, 3, 5)), 40000);
     ExpectExactRays(*MeshOf(BallOf(10, 16, 2)), 30000);

@@ -1,0 +1,128 @@
+#include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+
+#include <cstddef>
+#include <cstring>
+
+namespace fulcrum {
+
+namespace {
+
+using namespace contacts;
+
+// The members from the first vector up to those that do not depend on the manifold are arrays of lanes without gaps, in
+// batches of any width.
+template <int N, bool kFixedB>
+struct LaneRegion {
+    using Batch = ContactBatch<N, kFixedB>;
+    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, collisions),
+                            kBounces = offsetof(Batch, restitution);
+    static constexpr size_t kCount = (kEnd - kBegin) / (N * sizeof(float));
+    static constexpr size_t kBounceCount = 3;
+    static_assert(kBegin + kCount * N * sizeof(float) == kEnd);
+    static_assert(kBounces + kBounceCount * N * sizeof(float) <= sizeof(Batch));
+};
+
+template <int N, bool kFixedB>
+std::byte* LaneAt(ContactBatch<N, kFixedB>& batch, size_t begin, size_t i, int lane) {
+    return reinterpret_cast<std::byte*>(&batch) + begin + (i * N + static_cast<size_t>(lane)) * sizeof(float);
+}
+
+// Calls copy(float of the lane, float of the other batch) for all of them.
+template <int N, bool kFixedB, class Copy>
+void VisitLane(ContactBatch<N, kFixedB>& batch, int lane, ContactBatch<1, kFixedB>& single, Copy&& copy) {
+    using Region = LaneRegion<N, kFixedB>;
+    using Single = LaneRegion<1, kFixedB>;
+    static_assert(Region::kCount == Single::kCount);
+    for (size_t i = 0; i < Region::kCount; ++i)
+        copy(LaneAt(batch, Region::kBegin, i, lane), LaneAt(single, Single::kBegin, i, 0));
+    if (batch.bounces)
+        for (size_t i = 0; i < Region::kBounceCount; ++i)
+            copy(LaneAt(batch, Region::kBounces, i, lane), LaneAt(single, Single::kBounces, i, 0));
+}
+
+// The impulses of the rows are applied to the bodies' velocities without the warm start: `sign` 1 takes them out of the
+// warm start, -1 adds them to it.
+template <bool kFixedB>
+void MoveOutOfWarmStart(const ContactBatch<1, kFixedB>& single, float* freeA, float* freeB, float sign) {
+    using Real = Wide<1>;
+    Twists<1, kFixedB> twists;
+    twists.rowsA[0] = freeA;
+    GatherRows<1>(reinterpret_cast<const float* const(&)[1]>(twists.rowsA), twists.a);
+    if constexpr (!kFixedB) {
+        twists.rowsB[0] = freeB;
+        GatherRows<1>(reinterpret_cast<const float* const(&)[1]>(twists.rowsB), twists.b);
+    }
+    const Real factor(sign);
+    const NormalImpulses<Real> normal = TotalOf(single);
+    const auto* f = single.frictionImpulse;
+    const Vec3<Real> force = single.normal * normal.sum + single.tangent1 * f[0] + single.tangent2 * f[1],
+                     torque = NormalTorque(single, normal.sumA, normal.sumB) + single.normal * f[2];
+    ApplyToBoth<1, kFixedB>(single, twists, force * factor, torque * factor);
+    Scatter(single, twists);
+}
+
+template <class Real>
+void ClearRow(auto& row) {
+    row.a = row.b = row.inverseResponse = row.startSeparation = row.separation = row.impulse = Real(0.0f);
+}
+
+}  // namespace
+
+template <int N, bool kFixedB>
+void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecord* records,
+                   const ConstSolverBodies& bodies, float* freeA, float* freeB, const ContactPrepareSettings& settings,
+                   float elapsed) {
+    using Real = Wide<1>;
+    ContactBatch<1, kFixedB> before{}, after{};
+    VisitLane(batch, lane, before, [](const void* from, void* to) { std::memcpy(to, from, sizeof(float)); });
+    before.count = after.count = 1;
+    before.pointCount = batch.pointCount;
+    MoveOutOfWarmStart(before, freeA, freeB, 1.0f);
+    const ContactRecord& record = records[batch.contact[lane]];
+    if (record.Has(ContactRecord::kApart)) {
+        after = before;
+        for (auto& row : after.rows) ClearRow<Real>(row);
+        for (Real& impulse : after.frictionImpulse) impulse = Real(0.0f);
+    } else {
+        after.contact[0] = batch.contact[lane];
+        after.bodyA[0] = 0;
+        PrepareContacts<1, kFixedB>(after, records, {1}, bodies, settings);
+        if constexpr (kFixedB) {
+            auto& side = after.sideB;
+            side.velocity.linear -= side.acceleration * Real(elapsed);
+        }
+        // The rows refer to displacements since the start of the step.
+        Twists<1, kFixedB> twists;
+        for (int k = 0; k < 8; ++k) {
+            twists.a[k] = Real(bodies.states[0].PoseRow()[k]);
+            if constexpr (!kFixedB) twists.b[k] = Real(bodies.states[1].PoseRow()[k]);
+        }
+        const NormalMotion<Real> moved =
+            NormalMotionOf(after, RelativeTwist<BodyRow::Displacement>(after, twists, elapsed));
+        for (int i = 0; i < after.pointCount; ++i) after.rows[i].startSeparation -= MotionOf(after.rows[i], moved);
+        for (int i = after.pointCount; i < ContactRecord::kMaxPoints; ++i) ClearRow<Real>(after.rows[i]);
+    }
+    MoveOutOfWarmStart(after, freeA, freeB, -1.0f);
+    if constexpr (!kFixedB) after.sideB.body[0] = batch.sideB.body[lane];
+    // Rows that no lane had.
+    for (; batch.pointCount < after.pointCount; ++batch.pointCount) {
+        const int i = batch.pointCount;
+        ClearRow<Wide<N>>(batch.rows[i]);
+        for (int j = 0; j < i; ++j) batch.response[PairIndex(j, i)] = Wide<N>(0.0f);
+    }
+    if (batch.bounces && !after.bounces)
+        after.restitution = before.restitution, after.closing = before.closing,
+        after.acceleration = before.acceleration;
+    VisitLane(batch, lane, after, [](void* to, const void* from) { std::memcpy(to, from, sizeof(float)); });
+    const float times = __builtin_sqrtf(batch.collisions[lane]) + 1;
+    batch.collisions.Set(lane, times * times);
+}
+
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                         \
+    template void RefillContact(ContactBatch<lanes, fixedB>&, int, const ContactRecord*, const ConstSolverBodies&, \
+                                float*, float*, const ContactPrepareSettings&, float);
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
+#undef FULCRUM_INSTANTIATE
+
+}  // namespace fulcrum
