@@ -1,6 +1,6 @@
 // The closest points of two shapes of many pieces take time in proportion to their pieces, not to the pairs of them:
-// two fields of 32 by 32 cells took 0.8 s, of 64 by 64 12 s. Nor do triangles that overlap and that are as long as the
-// rounding of their numbers is large take milliseconds a pair.
+// two fields of 32 by 32 cells took 0.8 s, of 64 by 64 12 s. Nor does each pair of pieces that overlap take a
+// millisecond where EPA fails: a compound of four children at a mesh of 128 triangles took 0.4 s.
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
@@ -112,6 +112,7 @@ TEST(ClosestEffort, OfFarChildrenIsBounded) {
         {.shape = Cylinder::CreateTapered(0.3f, 0.2f, 0.45f).Value(), .position = Vector3(0, 0.2f, 2 * kFar)}};
     const auto compound = Compound::Create(children).Value();
     const Vector3 first = compound->PoseOf(compound->ChildAt(0)).position;
+    double seconds = 0;
     for (int i = 0; i < Cases(60); ++i) {
         const SurfacePtr field = FieldOf(RandomHeights(random, 8), 8, i % 2 == 0);
         const Quaternion rotation = random.Rotation();
@@ -120,8 +121,9 @@ TEST(ClosestEffort, OfFarChildrenIsBounded) {
         ClosestPoints closest;
         EXPECT_TRUE(FindClosestPoints(*field, *compound, {there, rotation}, kInfinity, closest)) << i;
         EXPECT_TRUE(std::isfinite(closest.distance) && IsFinite(closest.normal)) << i;
-        EXPECT_LT(ProcessorSeconds() - begin, kIsSanitized ? 10 : 0.1) << i;
+        seconds += ProcessorSeconds() - begin;
     }
+    EXPECT_LT(seconds, kIsSanitized ? 60 : 4);
 }
 
 // Whatever is left out is farther away: each triangle of one against the other shape alone finds nothing closer.
