@@ -147,7 +147,9 @@ struct WideMask {
         if constexpr (N >= 4) {
             uint32_t found = 0;
             for (int i = 0; i < N / 4; ++i)
-                found |= static_cast<uint32_t>(wasm_i32x4_bitmask(wasm_v128_load(reinterpret_cast<const char*>(&bits) + 16 * i))) << 4 * i;
+                found |= static_cast<uint32_t>(
+                             wasm_i32x4_bitmask(wasm_v128_load(reinterpret_cast<const char*>(&bits) + 16 * i)))
+                         << 4 * i;
             return found;
         }
 #endif
@@ -255,7 +257,8 @@ inline Wide<N> Select(WideMask<N> mask, Wide<N> a, Wide<N> b) {
 #endif
 #if defined(__wasm_simd128__)
     if constexpr (N >= 4)
-        return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y, v128_t m) { return wasm_v128_bitselect(x, y, m); }, a.v, b.v, mask.bits));
+        return Wide<N>::Of(registers::ByRegister(
+            [](v128_t x, v128_t y, v128_t m) { return wasm_v128_bitselect(x, y, m); }, a.v, b.v, mask.bits));
 #endif
     return Wide<N>::Of(mask.bits ? a.v : b.v);
 }
@@ -271,7 +274,8 @@ inline Wide<N> Min(Wide<N> a, Wide<N> b) {
     if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_min_ps((__m128)a.v, (__m128)b.v));
 #endif
 #if defined(__wasm_simd128__)
-    if constexpr (N >= 4) return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y) { return wasm_f32x4_pmin(y, x); }, a.v, b.v));
+    if constexpr (N >= 4)
+        return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y) { return wasm_f32x4_pmin(y, x); }, a.v, b.v));
 #endif
     return Select(a < b, a, b);
 }
@@ -284,7 +288,8 @@ inline Wide<N> Max(Wide<N> a, Wide<N> b) {
     if constexpr (N == 4) return Wide<N>::Of((typename Wide<N>::Float)_mm_max_ps((__m128)a.v, (__m128)b.v));
 #endif
 #if defined(__wasm_simd128__)
-    if constexpr (N >= 4) return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y) { return wasm_f32x4_pmax(y, x); }, a.v, b.v));
+    if constexpr (N >= 4)
+        return Wide<N>::Of(registers::ByRegister([](v128_t x, v128_t y) { return wasm_f32x4_pmax(y, x); }, a.v, b.v));
 #endif
     return Select(a > b, a, b);
 }

@@ -27,6 +27,10 @@ function(fulcrum_library_properties target)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
+  # LLVM 14's vectorizer of straight-line code makes wrong code for WebAssembly: of the trees of joints, for one. To be said after -O2.
+  if(EMSCRIPTEN)
+    target_compile_options(${target} PRIVATE -fno-slp-vectorize)
+  endif()
   set_target_properties(${target} PROPERTIES
     DEFINE_SYMBOL ""
     VERSION ${PROJECT_VERSION}

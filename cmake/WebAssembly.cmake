@@ -10,9 +10,8 @@ if(NOT EMSCRIPTEN)
 endif()
 
 get_filename_component(FULCRUM_COMPATIBILITY ${CMAKE_CURRENT_LIST_DIR}/../Web/Compatibility ABSOLUTE)
-# One compilation serves programs with and without threads. LLVM 14's vectorizer of straight-line code makes wrong code for
-# SIMD128 (trees of joints); sizes have 32 bits here.
-set(CMAKE_CXX_FLAGS_INIT "-msimd128 -pthread -fno-slp-vectorize -Wno-shorten-64-to-32 -isystem ${FULCRUM_COMPATIBILITY}")
+# One compilation serves programs with and without threads. Sizes have 32 bits here.
+set(CMAKE_CXX_FLAGS_INIT "-msimd128 -pthread -Wno-shorten-64-to-32 -isystem ${FULCRUM_COMPATIBILITY}")
 # To link without threads. LLVM 14's linker adds the address of thread-local data twice then, which does not matter where it is 0.
 set(FULCRUM_WITHOUT_THREADS -sUSE_PTHREADS=0 -sGLOBAL_BASE=0)
 set(CMAKE_CXX_FLAGS_RELEASE_INIT "-O2 -DNDEBUG")

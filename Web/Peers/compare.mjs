@@ -21,17 +21,26 @@ console.log(`|${' --- |'.repeat(3 + engines.length)}`);
 for (const name of names.length > 0 ? names : Object.keys(SCENES)) {
   const scene = SCENES[name](), runs = engines.map((engine) => ({ ...engine.build(scene), times: [], ratios: [] }));
   const steps = Math.min(most, scene.steps);
-  for (const run of runs) run.step(); // untimed
+  // An engine whose memory does not suffice ends here for this scene.
+  const advance = (run) => {
+    if (run.failed) return;
+    try {
+      run.step();
+    } catch (error) {
+      run.failed = error;
+    }
+  };
+  for (const run of runs) advance(run); // untimed
   for (let step = 0; step < steps; ++step) {
     // Who comes first changes, since a cache is warmer for who comes after a small one.
     for (let i = 0; i < runs.length; ++i) {
       const run = runs[(step + i) % runs.length], begin = performance.now();
-      run.step();
+      advance(run);
       run.times.push(performance.now() - begin);
     }
     for (const run of runs) run.ratios.push(run.times[step] / runs[0].times[step]);
   }
-  const cells = runs.map((run, i) => `${digits(median(run.times))}${i > 0 ? ` (${digits(median(run.ratios))} ×)` : ''} [${digits(scene.off(run))}]`);
+  const cells = runs.map((run, i) => run.failed ? '–' : `${digits(median(run.times))}${i > 0 ? ` (${digits(median(run.ratios))} ×)` : ''} [${digits(scene.off(run))}]`);
   console.log(`| \`${name}\` | ${scene.bodies.length} | ${scene.meaning} | ${cells.join(' | ')} |`);
 }
 process.exit(0);

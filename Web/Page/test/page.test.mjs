@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { existsSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
 import test, { after, before } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { load } from '../../Package/src/node.js';
@@ -49,8 +50,8 @@ test('a pile falls while the page plays, and hashes are those of node', { timeou
   });
   const before = await height();
   await page.evaluate(() => window.fulcrum.play());
-  await page.waitForFunction(() => window.fulcrum.steps > 20, null, { timeout: 240000 });
-  await page.evaluate(() => window.fulcrum.play(false));
+  await page.waitForFunction(() => window.fulcrum.steps > 3, null, { timeout: 240000 });
+  await page.evaluate(() => { window.fulcrum.play(false); window.fulcrum.step(40); });
   assert.ok(await height() < before - 1, 'the top of the pyramid fell');
   assert.match(await page.textContent('#clock'), /step \d+/);
   assert.match(await page.textContent('#summary'), /ms.*penetration/s);
@@ -140,6 +141,35 @@ test('an isolated page has threads and the same hashes', { timeout: 600000 }, as
     await page.close();
   } finally {
     server.kill();
+  }
+});
+
+test('the package loads in pages, isolated with threads, else without', { timeout: 600000 }, async () => {
+  const types = { js: 'text/javascript', cjs: 'text/javascript', wasm: 'application/wasm' };
+  const isolated = { 'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp' };
+  const server = createServer(async (request, response) => {
+    const [, kind, name] = request.url.match(/^\/(alone|open)\/(.*)$/) ?? [];
+    response.writeHead(200, { 'Content-Type': types[name?.split('.').at(-1)] ?? 'text/html', ...(kind === 'alone' ? isolated : {}) });
+    response.end(name ? await readFile(pathOf(`../../Package/${name}`)) : '<!doctype html><title>package</title><link rel="icon" href="data:,">');
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  try {
+    for (const [kind, threads] of [['alone', 2], ['open', 1]]) {
+      const page = await browser.newPage();
+      page.on('pageerror', (error) => complaints.push(error.message));
+      await page.goto(`http://localhost:${server.address().port}/${kind}/`);
+      const found = await page.evaluate(async () => {
+        const { load } = await import('./src/index.js');
+        const fulcrum = await load({ base: new URL('./dist/', location.href), threads: 2 });
+        const world = fulcrum.createScene('hinge');
+        for (let step = 0; step < 30; ++step) world.step();
+        return [world.threads, world.hashPoses().toString(16)];
+      });
+      assert.deepEqual(found, [threads, await hashInNode('hinge', 30)]);
+      await page.close();
+    }
+  } finally {
+    server.close();
   }
 });
 
