@@ -12,10 +12,10 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x1d2de12d76d48a0eull;
-constexpr uint64_t kGoldenHashOfJoints = 0x8e0c4952a2d32634ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x22c635c460d011fcull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x4899eb60e4ffbab0ull;
+constexpr uint64_t kGoldenHash = 0x87514cca87400bbbull;
+constexpr uint64_t kGoldenHashOfJoints = 0xc5a59a1f6ca9c0c5ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x815f70e52a38625full;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x022a9e2488d02425ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
