@@ -257,7 +257,8 @@ Result<Command> ParseRunnerCommand(std::vector<std::string> arguments) {
     } else if (drop->parsed()) {
         command.kind = CommandKind::Drop;
         if (file.empty())
-            return Error{ErrorCode::OutOfRange, "drop needs a mesh file, for example: ./fulcrum drop Samples/Meshes/teapot.obj"};
+            return Error{ErrorCode::OutOfRange,
+                         "drop needs a mesh file, for example: ./fulcrum drop Samples/Meshes/teapot.obj"};
         command.scene = command.onto.empty() ? &DropScene::kScene : &DropOntoScene::kScene;
         command.file = file;
     } else if (replay->parsed() || shrink->parsed()) {
