@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kGoldenHash = 0x87514cca87400bbbull;
 constexpr uint64_t kGoldenHashOfJoints = 0xc5a59a1f6ca9c0c5ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x815f70e52a38625full;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xe210a4d08f540ff2ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x022a9e2488d02425ull;
 
 std::string Hex(uint64_t number) {
