@@ -117,13 +117,17 @@ TEST(WorldMemory, NothingGoesPastIt) {
             ASSERT_TRUE(system->RestoreSnapshot(snapshot));
             system->VisitIslands([](BodyId, uint32_t) {});
             system->VisitBodies([&](BodyId id) {
-                if (id.index % 3 == 0) EXPECT_TRUE(system->Bodies().Remove(id));
+                if (id.index % 3 == 0) {
+                    EXPECT_TRUE(system->Bodies().Remove(id));
+                }
             });
             for (int step = 0; step < 20; ++step) ASSERT_TRUE(system->Update(kStep));
             EXPECT_GT(memory.Bytes(), 100'000);
         }
         EXPECT_EQ(memory.Bytes(), 0);
-        if (counts) EXPECT_EQ(AllocationCount() - before, 0u);
+        if (counts) {
+            EXPECT_EQ(AllocationCount() - before, 0u);
+        }
     }
 }
 

@@ -365,7 +365,9 @@ TEST(WorldThreads, EditCastAndStepAtOnce) {
                         const auto held = system.Queries().Hold();
                         system.VisitContacts([](const ContactView& view) { EXPECT_TRUE(IsFinite(view.normal)); });
                     }
-                    if (random.Chance(0.02f)) EXPECT_NE(system.HashState(), 0u);
+                    if (random.Chance(0.02f)) {
+                        EXPECT_NE(system.HashState(), 0u);
+                    }
                     ++asked;
                 }
             });
