@@ -38,7 +38,7 @@ public:
     T Get() {
         T value{};
         const size_t size = std::min(sizeof(T), bytes_.size());
-        std::memcpy(&value, bytes_.data(), size);
+        if (size > 0) std::memcpy(&value, bytes_.data(), size);
         bytes_ = bytes_.subspan(size);
         return value;
     }

@@ -61,8 +61,11 @@ extern "C" void* malloc(std::size_t size) noexcept {
 #endif
 #endif
 #ifndef FULCRUM_KEEPS_OPERATOR_NEW
-// The array and the non-throwing forms call these.
+// The array forms call these; so do the non-throwing ones, but those of AddressSanitizer do not.
 void* operator new(std::size_t size) { return Allocate(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__); }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    return Allocate(size, __STDCPP_DEFAULT_NEW_ALIGNMENT__);
+}
 void* operator new(std::size_t size, std::align_val_t alignment) {
     return Allocate(size, static_cast<std::size_t>(alignment));
 }
