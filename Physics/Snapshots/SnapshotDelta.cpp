@@ -227,7 +227,7 @@ Status ApplySnapshotDelta(std::span<const std::byte> base, std::span<const std::
     const Result<SnapshotParts> before = CheckSnapshot(base);
     if (!before) return before.GetError();
     DeltaHeader header{};
-    std::memcpy(&header, delta.data(), std::min(delta.size(), sizeof header));
+    if (!delta.empty()) std::memcpy(&header, delta.data(), std::min(delta.size(), sizeof header));
     if (header.magic != kDeltaMagic) return Error{ErrorCode::Unsupported, "this is no delta of snapshots"};
     if (header.format != SnapshotFormat())
         return Error{ErrorCode::Unsupported, "the delta is of another version or build of the library"};
