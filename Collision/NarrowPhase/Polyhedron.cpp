@@ -141,17 +141,18 @@ Polyhedron CoreOf(const Capsule& capsule, PolyhedronStorage& storage) {
     return p;
 }
 
-Polyhedron CoreOf(const Sphere& sphere, PolyhedronStorage& storage) {
+// Of a sphere, or of a point that queries search for.
+Polyhedron PointWithRadius(float radius, PolyhedronStorage& storage) {
     storage.vertices[0] = Vector3::Zero();
     FillLanes(storage, 1);
     Polyhedron p = SmallCore(storage, 1, 0);
-    p.radius = sphere.Radius();
+    p.radius = radius;
     return p;
 }
 
 Polyhedron CoreOf(const ConvexShape& shape, PolyhedronStorage& storage) {
     switch (shape.Type()) {
-        case ShapeType::Sphere: return CoreOf(static_cast<const Sphere&>(shape), storage);
+        case ShapeType::Sphere: return PointWithRadius(shape.ConvexRadius(), storage);
         case ShapeType::Box: return CoreOf(static_cast<const Box&>(shape), storage);
         case ShapeType::Capsule: return CoreOf(static_cast<const Capsule&>(shape), storage);
         case ShapeType::ConvexHull: return CoreOf(static_cast<const ConvexHull&>(shape));
