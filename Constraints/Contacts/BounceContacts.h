@@ -35,11 +35,12 @@ struct Hits {
 
 // Separations are current: in relax iterations those at the end of the substep.
 template <bool kRelax, int N, bool kFixedB>
-FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
+FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batch,
+                                            const Bounciness<Wide<N>>& bounciness, const ContactSolveSettings& settings,
                                             const NormalMotion<Wide<N>>& free, const NormalMotion<Wide<N>>& velocity) {
     using Real = Wide<N>;
     const float dt = 1.0f / settings.inverseDt;
-    const Real zero(0.0f), h(dt), closing = batch.closing;
+    const Real zero(0.0f), h(dt), closing = bounciness.closing;
     Hits<Real> hits;
     hits.time = h;
     Real approach[Hits<Real>::kPoints], gap[Hits<Real>::kPoints];
@@ -49,15 +50,16 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
         approach[i] = Max(Min(-MotionOf(row, free), -MotionOf(row, velocity)), zero);
         const Real start = kRelax ? row.separation + approach[i] * h : row.separation;  // at the start of the substep
         gap[i] = Max(start, zero);
-        const auto isImpact = ImpactSpeed(batch, approach[i], gap[i], h) > SlowestImpact(batch, settings);
-        isHit[i] = isImpact & (batch.restitution > zero) & (start <= approach[i] * h) & (row.inverseResponse > zero);
+        const auto isImpact = ImpactSpeed(bounciness, approach[i], gap[i], h) > SlowestImpact(bounciness, settings);
+        isHit[i] = isImpact & (bounciness.restitution > zero) & (start <= approach[i] * h) & (row.inverseResponse > zero);
         const Real time = Min(gap[i] / Max(approach[i], Real(1e-30f)), h);
         hits.time = Select(isHit[i], Min(hits.time, time), hits.time);
     }
     // All points are hit at that time. Free flight is integrated exactly, including a h^2 / 2 (Integrate.cpp).
     const Real fall = closing * (h - hits.time), lift = closing * h;
     for (int i = 0; i < batch.pointCount; ++i) {
-        const Real after = batch.restitution * ImpactSpeed(batch, approach[i], Min(gap[i], approach[i] * hits.time), h);
+        const Real way = Min(gap[i], Real(approach[i] * hits.time));
+        const Real after = bounciness.restitution * ImpactSpeed(bounciness, approach[i], way, h);
         const Real leaving = Sqrt(Max(fall * fall + after * after - lift * lift, zero)) - fall;
         // A body that gravity draws away from what it hits, such as a ball below a ceiling, leaves faster than it came.
         const Real fastest = approach[i] - Real(2.0f) * Min(closing, zero) * h;
@@ -109,6 +111,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     GatherFree(batch, settings, solved, free);
     const Twists<N, kFixedB>& velocity = kRelax ? solved : free;
     Gather<BodyRow::Displacement>(batch, states, displacement);
+    const Bounciness<Real> bounciness = GatherBounciness(batch, *settings.rare);
     // Recomputed, because impacts of this iteration have displaced bodies. Lanes without restitution stay
     // bit-identical.
     const auto findSeparations = [&] {
@@ -117,7 +120,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
         for (int i = 0; i < batch.pointCount; ++i) {
             auto& row = batch.rows[i];
             row.separation =
-                Select(batch.restitution > zero, row.startSeparation + MotionOf(row, moved), row.separation);
+                Select(bounciness.restitution > zero, row.startSeparation + MotionOf(row, moved), row.separation);
         }
     };
     findSeparations();
@@ -125,7 +128,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     const NormalMotion<Real> motion = NormalMotionOf(batch, relative);
     const NormalMotion<Real> freeMotion =
         NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, free, settings.elapsed));
-    const Hits<Real> hits = FindHits<kRelax>(batch, settings, freeMotion, motion);
+    const Hits<Real> hits = FindHits<kRelax>(batch, bounciness, settings, freeMotion, motion);
     Real largest = zero;
     for (int i = 0; i < batch.pointCount; ++i) largest = Max(largest, hits.speed[i]);
     if (!(largest > zero).Any()) return;
@@ -136,8 +139,8 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
     Real tangential[3] = {along(relative.linear, batch.tangent1), along(relative.linear, batch.tangent2),
                           along(relative.angular, batch.normal)};
     if constexpr (!kFixedB)
-        if (batch.surfaces) {
-            const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, batch.surfaces);
+        if (batch.hasSurface) {
+            const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, settings.rare->surfaceVelocities);
             tangential[0] = MoveBy(tangential[0], surface.v1);
             tangential[1] = MoveBy(tangential[1], surface.v2);
             tangential[2] = MoveBy(tangential[2], surface.spin);
@@ -162,7 +165,7 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
                friction[1] * Dot<Real>(of.linear, batch.tangent2) + friction[2] * Dot<Real>(of.angular, batch.normal);
     };
     const Real before = rateOf(velocity), rest = Real(0.5f) * (rateOf(changed) - before);
-    const Real rate = Min(before + batch.closing * (Real(dt) - hits.time) * normal.sum, zero);
+    const Real rate = Min(before + bounciness.closing * (Real(dt) - hits.time) * normal.sum, zero);
     const Real part = Select(rest > -rate, -rate / Max(rest, Real(1e-30f)), one);
     Real sum = zero;
     for (int k = 0; k < 6; ++k) {

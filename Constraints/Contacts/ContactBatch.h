@@ -11,8 +11,8 @@
 //
 // A surface velocity (conveyor belts) changes the target velocity of the friction rows along t1, t2 and about n. If B
 // is static or kinematic it is added to the velocity of its contact point, at no cost. If B is dynamic, batches with
-// such a contact use their own instance of the kernel, which reads the surface velocity from the records, so batches do
-// not grow.
+// such a contact use their own instance of the kernel, which reads the surface velocity by contact, so batches do not
+// grow. So do batches with restitution.
 //
 // Applied to displacements since the start of the step instead of velocities, the same rows give the change of the
 // separations.
@@ -29,7 +29,6 @@ namespace fulcrum {
 template <int N>
 struct MovingSide {
     using Real = Wide<N>;
-    uint32_t body[N];
     Vec3<Real> arm;  // m, from its center of mass to c
     InverseMass<Real> inverse;
 };
@@ -53,16 +52,16 @@ struct ContactBatch {
     using Real = Wide<N>;
     static constexpr int kPoints = ContactRecord::kMaxPoints;
 
-    uint32_t contact[N];  // indices of the records; the first `count` lanes are in use
-    uint32_t bodyA[N];
+    // Indices of the records and of the bodies. The first `count` lanes are in use, the others repeat the last of them.
+    uint32_t contact[N];
+    uint32_t bodyA[N], bodyB[N];
     int32_t count;
     int32_t pointCount;     // maximum over the lanes
     bool bounces;           // some lane has restitution
     bool hasNotes = false;  // some lane reports contact events: see ContactNote
+    bool hasSurface;        // second bodies are dynamic, and some lane has a surface velocity
     // Lanes whose bodies moved so far relative to each other that they should collide again.
     uint16_t rotated = 0, slid = 0;
-    const ContactRecord*
-        surfaces;  // the records, if second bodies are dynamic and some lane has a surface velocity; else null
 
     Vec3<Real> normal, tangent1, tangent2;
     Vec3<Real> armA;
@@ -89,12 +88,6 @@ struct ContactBatch {
     Real collisions;
     Real maxPushSpeed;      // m/s: limit of the penetration recovery speed
     Real inverseSoftDepth;  // 1/m, of the overlap from which rows stiffen, see ContactSolveSettings
-
-    // Only where `bounces`.
-    Real restitution;   // 0..1
-    Real closing;       // m/s2: relative acceleration of the bodies towards each other along the normal, by gravity and
-                        // forces
-    Real acceleration;  // m/s2 of gravity and forces, of the body that has the larger one
 };
 
 struct ContactNote;
@@ -105,6 +98,14 @@ struct ContactPrepareSettings {
     float maxPushSpeed;                           // m/s
     float dt = 0;                                 // s, of the step
     const MassOverride* massOverrides = nullptr;  // by record, for those with kMassOverride; null if none has one
+    const SurfaceVelocity* surfaceVelocities = nullptr;  // by record; null if none has one
+};
+
+// What few batches read while they are solved.
+struct RareContactData {
+    const ContactRecord* records = nullptr;              // restitution
+    const BodyPose* poses = nullptr;                     // accelerations, for contacts with restitution
+    const SurfaceVelocity* surfaceVelocities = nullptr;  // as above
 };
 
 struct ContactSolveSettings {
@@ -126,6 +127,7 @@ struct ContactSolveSettings {
     float restitutionSpeed = 0;      // m/s: restitution threshold, slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without the impulses that the next
                                      // substep's warm start applies again; null if there is none
+    const RareContactData* rare = nullptr;  // for batches with restitution or surface velocities
     ContactNote* notes = nullptr;    // of all contacts, by record, for batches with notes: impact impulses are added
     // Position passes, see CorrectContacts:
     float baumgarte = 0;       // 0..1: fraction of an overlap that an iteration corrects
@@ -136,12 +138,11 @@ struct ContactSolveSettings {
     void Soften(float frequency, float dampingRatio, float h, float maxPushSpeed);
 };
 
-// Fills the batch of `batch.contact[0 .. count)` from the records, which must stay in place until the impulses are
-// stored; bodyB[] are the second bodies. Returns the bit mask of lanes that got a number that is not finite: these are
-// inactive.
+// Fills the rows of a batch whose contacts and bodies are set from the records. Returns the bit mask of lanes that got a
+// number that is not finite: these are inactive.
 template <int N, bool kFixedB>
-uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
-                         const ConstSolverBodies& bodies, const ContactPrepareSettings& settings);
+uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const ConstSolverBodies& bodies,
+                         const ContactPrepareSettings& settings);
 
 // Applies the impulses of the last step.
 template <int N, bool kFixedB>

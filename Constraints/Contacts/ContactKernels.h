@@ -25,7 +25,7 @@ void GatherVelocities(const ContactBatch<N, kFixedB>& batch, const BodyState* st
     for (int i = 0; i < N; ++i) rows[i] = states[batch.bodyA[i]].VelocityRow();
     GatherRows<N>(rows, twists.a);
     if constexpr (!kFixedB) {
-        for (int i = 0; i < N; ++i) rows[i] = states[batch.sideB.body[i]].VelocityRow();
+        for (int i = 0; i < N; ++i) rows[i] = states[batch.bodyB[i]].VelocityRow();
         GatherRows<N>(rows, twists.b);
     }
 }
@@ -45,7 +45,7 @@ FULCRUM_FORCE_INLINE void Gather(const ContactBatch<N, kFixedB>& batch, BodyStat
     for (int i = 0; i < N; ++i) twists.rowsA[i] = RowOf<kRow>(states[batch.bodyA[i]]);
     GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsA), twists.a);
     if constexpr (!kFixedB) {
-        for (int i = 0; i < N; ++i) twists.rowsB[i] = RowOf<kRow>(states[batch.sideB.body[i]]);
+        for (int i = 0; i < N; ++i) twists.rowsB[i] = RowOf<kRow>(states[batch.bodyB[i]]);
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(twists.rowsB), twists.b);
     }
 }
@@ -128,16 +128,14 @@ struct SurfaceMotion {
     Real spin;    // rad/s about n
 };
 template <int N, bool kFixedB>
-SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch, const ContactRecord* records) {
+SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch, const SurfaceVelocity* surfaces) {
     using Real = Wide<N>;
-    Real motion[2 * ContactRecord::kSurfacePoints];
-    for (int i = 0; i < ContactRecord::kSurfacePoints; ++i) {
-        Real row[8];
-        GatherRecordRow<N>(batch.contact, records, ContactRecord::kPoints + i, row);
-        motion[2 * i] = row[ContactRecord::kSurfaceA];
-        motion[2 * i + 1] = row[ContactRecord::kSurfaceB];
-    }
-    const Vec3<Real> linear(motion[0], motion[1], motion[2]), angular(motion[3], motion[4], motion[5]);
+    Vec3<Real> linear, angular;
+    for (int i = 0; i < N; ++i)
+        for (int k = 0; k < 3; ++k) {
+            linear[k].Set(i, surfaces[batch.contact[i]].linear[k]);
+            angular[k].Set(i, surfaces[batch.contact[i]].angular[k]);
+        }
     const auto finite = (Dot<Real>(linear, linear) + Dot<Real>(angular, angular)) * Real(0.0f) == Real(0.0f);
     const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) {
         return Select(finite, Dot<Real>(v, axis), Real(0.0f));

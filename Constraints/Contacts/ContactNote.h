@@ -28,10 +28,9 @@ FULCRUM_CHECK_PLACE(ContactNote, twistImpulse, 0, ContactNote::kTwistImpulse);
 FULCRUM_CHECK_PLACE(ContactNote, approachSpeed, 1, ContactNote::kApproachSpeeds);
 FULCRUM_CHECK_PLACE(ContactNote, normal, 1, ContactNote::kNormal);
 
-// Initializes the notes of a batch's contacts before the solve; bodyB[] are the second bodies.
+// Initializes the notes of a batch's contacts before the solve.
 template <int N, bool kFixedB>
-void BeginNotes(const ContactBatch<N, kFixedB>& batch, const uint32_t (&bodyB)[N], const ConstSolverBodies& bodies,
-                ContactNote* notes);
+void BeginNotes(const ContactBatch<N, kFixedB>& batch, const ConstSolverBodies& bodies, ContactNote* notes);
 
 // Adds the impulses of the substep just solved.
 template <int N, bool kFixedB>

@@ -13,10 +13,8 @@ struct alignas(32) ContactRecord {
 
     struct Point {
         float onA[3] = {0, 0, 0};  // m, in A's center frame
-        float surfaceA = 0;        // see SetSurfaceVelocity
-        float onB[3] = {0, 0,
-                        0};  // m, in B's center frame; the separation is (onB - onA) . normal at the current poses
-        float surfaceB = 0;
+        // m, in B's center frame; the separation is (onB - onA) . normal at the current poses
+        float onB[3] = {0, 0, 0};
     };
 
     float normal[3] = {0, 1, 0};  // unit, from A to B, in A's center frame
@@ -29,13 +27,18 @@ struct alignas(32) ContactRecord {
     float impulse[kMaxPoints] = {0, 0, 0, 0};  // N s along the normal, by point
     float frictionImpulse[3] = {0, 0, 0};      // N s, world axes, on B
     float twistImpulse = 0;                    // N m s about the normal
-    Point points[kMaxPoints];                  // a row each
+    Point points[kMaxPoints];                  // four in three rows
 
     enum Rows { kHead, kImpulses, kPoints };
+    static constexpr int kPointFloats = 6;
+    // Rows that contain so many points.
+    static constexpr int PointRows(int count) {
+        return (kPointFloats * count + static_cast<int>(kRowFloats) - 1) / static_cast<int>(kRowFloats);
+    }
     const float* Row(int row) const {
         return reinterpret_cast<const float*>(this) + kRowFloats * static_cast<size_t>(row);
     }
-    // Indices in the first row, in the second, and in the points' rows.
+    // Indices in the first row, in the second, and in a point's floats.
     enum Places {
         kNormal = 0,
         kPointCount = 3,
@@ -47,9 +50,7 @@ struct alignas(32) ContactRecord {
         kFrictionImpulse = 4,
         kTwistImpulse = 7,
         kOnA = 0,
-        kSurfaceA = 3,
-        kOnB = 4,
-        kSurfaceB = 7
+        kOnB = 3
     };
 
     // N s along the normal, of the points in use: impulses beyond them are those of earlier steps.
@@ -68,21 +69,8 @@ struct alignas(32) ContactRecord {
         const int others = static_cast<int>(marks) & ~mark;
         marks = static_cast<float>(has ? others | mark : others);
     }
-
-    // Surface velocity of B relative to A in addition to the motion of the bodies: m/s at the contact's center and
-    // rad/s, world axes. Few contacts have one, so its six components are stored in the spare floats of the first three
-    // points' rows.
-    static constexpr int kSurfacePoints = 3;
-    void SetSurfaceVelocity(const Vector3& linear, const Vector3& angular) {
-        Set(kSurfaceVelocity, !(linear.isZero(0) && angular.isZero(0)));
-        const float motion[2 * kSurfacePoints] = {linear[0], linear[1], linear[2], angular[0], angular[1], angular[2]};
-        for (int i = 0; i < kSurfacePoints; ++i) {
-            points[i].surfaceA = motion[2 * i];
-            points[i].surfaceB = motion[2 * i + 1];
-        }
-    }
 };
-static_assert(sizeof(ContactRecord) == 192 && sizeof(ContactRecord::Point) == sizeof(float) * kRowFloats);
+static_assert(sizeof(ContactRecord) == 160 && sizeof(ContactRecord::Point) == sizeof(float) * ContactRecord::kPointFloats);
 FULCRUM_CHECK_PLACE(ContactRecord, normal, ContactRecord::kHead, ContactRecord::kNormal);
 FULCRUM_CHECK_PLACE(ContactRecord, pointCount, ContactRecord::kHead, ContactRecord::kPointCount);
 FULCRUM_CHECK_PLACE(ContactRecord, friction, ContactRecord::kHead, ContactRecord::kFriction);
@@ -94,9 +82,14 @@ FULCRUM_CHECK_PLACE(ContactRecord, frictionImpulse, ContactRecord::kImpulses, Co
 FULCRUM_CHECK_PLACE(ContactRecord, twistImpulse, ContactRecord::kImpulses, ContactRecord::kTwistImpulse);
 FULCRUM_CHECK_PLACE(ContactRecord, points, ContactRecord::kPoints, 0);
 FULCRUM_CHECK_PLACE(ContactRecord::Point, onA, 0, ContactRecord::kOnA);
-FULCRUM_CHECK_PLACE(ContactRecord::Point, surfaceA, 0, ContactRecord::kSurfaceA);
 FULCRUM_CHECK_PLACE(ContactRecord::Point, onB, 0, ContactRecord::kOnB);
-FULCRUM_CHECK_PLACE(ContactRecord::Point, surfaceB, 0, ContactRecord::kSurfaceB);
+
+// Surface velocity of B relative to A in addition to the motion of the bodies, world axes, of contacts with
+// kSurfaceVelocity; zero for others.
+struct SurfaceVelocity {
+    float linear[3] = {0, 0, 0};   // m/s, at the contact's center
+    float angular[3] = {0, 0, 0};  // rad/s
+};
 
 // Mean distance from the origin over the area of a convex polygon that contains it; `x`, `y` are its corners in any
 // order, at most 4. Over the triangle (0, P, Q) it is 2/3 of the mean over the edge PQ, which Simpson's rule gives to

@@ -55,7 +55,7 @@ FULCRUM_FORCE_INLINE void GatherFree(const ContactBatch<N, kFixedB>& batch, cons
         GatherRows<N>(reinterpret_cast<const float* const(&)[N]>(rows), row);
     };
     gather(batch.bodyA, free.rowsA, free.a);
-    if constexpr (!kFixedB) gather(batch.sideB.body, free.rowsB, free.b);
+    if constexpr (!kFixedB) gather(batch.bodyB, free.rowsB, free.b);
 }
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void ScatterFree(const ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
@@ -63,23 +63,40 @@ FULCRUM_FORCE_INLINE void ScatterFree(const ContactBatch<N, kFixedB>& batch, con
     if (settings.unconstrained) Scatter(batch, free);
 }
 
+// What only contacts with restitution need: gathered when it is used, so that batches have no room for it.
+template <class Real>
+struct Bounciness {
+    Real restitution;   // 0..1
+    Real closing;       // m/s2: relative acceleration of the bodies towards each other along the normal, by gravity and
+                        // forces
+    Real acceleration;  // m/s2 of gravity and forces, of the body that has the larger one
+};
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE Bounciness<Wide<N>> GatherBounciness(const ContactBatch<N, kFixedB>& batch,
+                                                          const RareContactData& data) {
+    using Real = Wide<N>;
+    alignas(64) float restitution[N];
+    for (int i = 0; i < N; ++i) restitution[i] = data.records[batch.contact[i]].restitution;
+    const Vec3<Real> a = GatherAcceleration<N>(batch.bodyA, data.poses),
+                     b = GatherAcceleration<N>(batch.bodyB, data.poses);
+    return {Real::Load(restitution), Dot<Real>(Vec3<Real>(a - b), batch.normal),
+            Sqrt(Max(Dot<Real>(a, a), Dot<Real>(b, b)))};
+}
+
 // m/s, impact speed: v^2 = u^2 + 2 a gap, with u the approach speed before the gravity of a substep of h seconds, and a
 // the closing acceleration.
-template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE Wide<N> ImpactSpeed(const ContactBatch<N, kFixedB>& batch, const Wide<N>& approach,
-                                         const Wide<N>& gap, const Wide<N>& h) {
-    using Real = Wide<N>;
-    const Real before = Max(approach - batch.closing * h, Real(0.0f));
-    return Sqrt(Max(before * before + Real(2.0f) * batch.closing * gap, Real(0.0f)));
+template <class Real>
+FULCRUM_FORCE_INLINE Real ImpactSpeed(const Bounciness<Real>& bounciness, const Real& approach, const Real& gap,
+                                      const Real& h) {
+    const Real before = Max(approach - bounciness.closing * h, Real(0.0f));
+    return Sqrt(Max(before * before + Real(2.0f) * bounciness.closing * gap, Real(0.0f)));
 }
 // m/s, restitution threshold: slower impacts do not bounce. At least a few substeps of gravity, so that bodies pressed
 // together by gravity come to rest.
-template <int N, bool kFixedB>
-FULCRUM_FORCE_INLINE Wide<N> SlowestImpact(const ContactBatch<N, kFixedB>& batch,
-                                           const ContactSolveSettings& settings) {
-    using Real = Wide<N>;
+template <class Real>
+FULCRUM_FORCE_INLINE Real SlowestImpact(const Bounciness<Real>& bounciness, const ContactSolveSettings& settings) {
     const Real slowest(settings.restitutionSpeed), few(4.0f / settings.inverseDt);
-    return Select(batch.closing > Real(0.0f), slowest, Min(slowest, few * batch.acceleration));
+    return Select(bounciness.closing > Real(0.0f), slowest, Min(slowest, few * bounciness.acceleration));
 }
 
 // What a velocity iteration solves. If relax iterations follow, friction is solved in those only: a friction row would
@@ -150,13 +167,14 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             GatherFree(batch, settings, twists, free);
             const NormalMotion<Real> own =
                 NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, free, settings.elapsed));
-            const Real h(1.0f / settings.inverseDt), slowest = SlowestImpact(batch, settings);
+            const Bounciness<Real> bounciness = GatherBounciness(batch, *settings.rare);
+            const Real h(1.0f / settings.inverseDt), slowest = SlowestImpact(bounciness, settings);
             for (int i = 0; i < batch.pointCount; ++i) {
                 const auto& row = batch.rows[i];
                 const Real gap = Max(row.separation, zero);
-                bounces[i] = ImpactSpeed(batch, Max(-MotionOf(row, own), zero), gap, h) > slowest;
+                bounces[i] = ImpactSpeed(bounciness, Real(Max(-MotionOf(row, own), zero)), gap, h) > slowest;
                 if constexpr (kPass == Pass::Relax) bounces[i] = bounces[i] | (row.separation > zero);
-                bounces[i] = bounces[i] & (batch.restitution > zero);
+                bounces[i] = bounces[i] & (bounciness.restitution > zero);
             }
         }
     const auto findSpeeds = [&] {
@@ -197,8 +215,8 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         Real v1 = Dot<Real>(relative.linear, batch.tangent1), v2 = Dot<Real>(relative.linear, batch.tangent2);
         Real wn = Dot<Real>(relative.angular, batch.normal);
         if constexpr (kRare && !kFixedB)
-            if (batch.surfaces) {
-                const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, batch.surfaces);
+            if (batch.hasSurface) {
+                const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, settings.rare->surfaceVelocities);
                 v1 = MoveBy(v1, surface.v1);
                 v2 = MoveBy(v2, surface.v2);
                 wn = MoveBy(wn, surface.spin);

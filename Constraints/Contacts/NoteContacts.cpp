@@ -27,15 +27,14 @@ FULCRUM_FORCE_INLINE Real FiniteOrZero(const Real& x) {
 // Approach speed v at the time of impact: v^2 = u^2 + 2 a gap, with u the current approach speed and a the closing
 // acceleration.
 template <int N, bool kFixedB>
-void BeginNotes(const ContactBatch<N, kFixedB>& batch, const uint32_t (&bodyB)[N], const ConstSolverBodies& bodies,
-                ContactNote* notes) {
+void BeginNotes(const ContactBatch<N, kFixedB>& batch, const ConstSolverBodies& bodies, ContactNote* notes) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;
     GatherVelocities(batch, bodies.states, twists);
     const NormalMotion<Real> motion = NormalMotionOf(batch, RelativeTwist<BodyRow::Velocity>(batch, twists, 0));
     const Vec3<Real> a = GatherAcceleration<N>(batch.bodyA, bodies.poses),
-                     b = GatherAcceleration<N>(bodyB, bodies.poses);
+                     b = GatherAcceleration<N>(batch.bodyB, bodies.poses);
     const Real closing = Dot<Real>(Vec3<Real>(a - b), batch.normal);
     Real row[8], none[8];
     for (int k = 0; k < 8; ++k) row[k] = none[k] = zero;
@@ -76,8 +75,7 @@ void AddRowImpulses(const ContactBatch<N, kFixedB>& batch, ContactNote* notes) {
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                           \
-    template void BeginNotes(const ContactBatch<lanes, fixedB>&, const uint32_t(&)[lanes], const ConstSolverBodies&, \
-                             ContactNote*);                                                                          \
+    template void BeginNotes(const ContactBatch<lanes, fixedB>&, const ConstSolverBodies&, ContactNote*);  \
     template void AddRowImpulses(const ContactBatch<lanes, fixedB>&, ContactNote*);                                  \
     template void AddImpulses(const ContactBatch<lanes, fixedB>&, const Wide<lanes>(&)[ContactNote::kMaxPoints],     \
                               const Wide<lanes>(&)[3], ContactNote*);

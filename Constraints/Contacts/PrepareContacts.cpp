@@ -104,20 +104,14 @@ template <int N, bool kFixedB>
 }
 
 template <int N, bool kFixedB>
-void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const uint32_t (&bodyB)[N],
-                    const ConstSolverBodies& bodies, const ContactPrepareSettings& settings) {
+void PrepareBounces(ContactBatch<N, kFixedB>& batch, Wide<N> restitution, const ConstSolverBodies& bodies,
+                    const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     Twists<N, kFixedB> twists;
     GatherVelocities(batch, bodies.states, twists);
     const Twist<Real> relative = RelativeTwist<BodyRow::Velocity>(batch, twists, 0);
     const Real vn = Dot<Real>(relative.linear, batch.normal);
     const Real w1 = Dot<Real>(relative.angular, batch.tangent1), w2 = Dot<Real>(relative.angular, batch.tangent2);
-    // Closing acceleration: minus the relative acceleration along n.
-    const Vec3<Real> a = GatherAcceleration<N>(batch.bodyA, bodies.poses),
-                     b = GatherAcceleration<N>(bodyB, bodies.poses);
-    batch.closing = Dot<Real>(Vec3<Real>(a - b), batch.normal);
-    batch.acceleration = Sqrt(Max(Dot<Real>(a, a), Dot<Real>(b, b)));
-    batch.restitution = restitution;
     Real left(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
@@ -169,9 +163,9 @@ Vec3<Real> WithinARadian(const Vec3<Real>& w, float dt) {
 // Adds the surface velocities to the velocities of static and kinematic sides. Lanes without one stay bit-identical, so
 // the result does not depend on the other lanes of the batch.
 template <int N>
-void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const ContactRecord* records, float dt) {
+void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const SurfaceVelocity* surfaces, float dt) {
     using Real = Wide<N>;
-    const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, records);
+    const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, surfaces);
     const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2,
                      angular = batch.normal * surface.spin;
     // Centripetal acceleration of points that rotate with the surface.
@@ -188,24 +182,24 @@ void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const 
 }  // namespace
 
 template <int N, bool kFixedB>
-uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const uint32_t (&bodyB)[N],
-                         const ConstSolverBodies& bodies, const ContactPrepareSettings& settings) {
+uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const ConstSolverBodies& bodies,
+                         const ContactPrepareSettings& settings) {
     using Real = Wide<N>;
     using Record = ContactRecord;
     const Real zero(0.0f);
     Real head[8], impulses[8];
     GatherRecordRow<N>(batch.contact, records, Record::kHead, head);
     GatherMass<N>(batch.bodyA, bodies.masses, batch.inverseA);
-    if constexpr (!kFixedB) GatherMass<N>(bodyB, bodies.masses, batch.sideB.inverse);
+    if constexpr (!kFixedB) GatherMass<N>(batch.bodyB, bodies.masses, batch.sideB.inverse);
     const bool isMarked = HorizontalMax(head[Record::kMarks]) > 0.0f;
     if (isMarked && settings.massOverrides) [[unlikely]]
         OverrideMasses(batch, records, settings.massOverrides);
     GatherRecordRow<N>(batch.contact, records, Record::kImpulses, impulses);
     Real& pointCount = head[Record::kPointCount];
     pointCount = Select(pointCount <= Real(static_cast<float>(Record::kMaxPoints)), Max(pointCount, zero), zero);
-    const Vec3<Real> between = GatherOffset<N>(batch.bodyA, bodyB, bodies.poses);
+    const Vec3<Real> between = GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses);
     const Mat3<Real> rotation = ToMatrix(GatherRotation<N>(batch.bodyA, bodies.poses));
-    const Mat3<Real> rotationB = ToMatrix(GatherRotation<N>(bodyB, bodies.poses));
+    const Mat3<Real> rotationB = ToMatrix(GatherRotation<N>(batch.bodyB, bodies.poses));
 
     const Vec3<Real> n = rotation * VectorAt<Record::kNormal>(head);
     const Vec3<Real> t1 = PerpendicularTo<Real>(n), t2 = Cross<Real>(n, t1);
@@ -217,10 +211,11 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.rotated = batch.slid = 0;
     batch.collisions = Real(1.0f);
     batch.maxPushSpeed = Real(settings.maxPushSpeed);
-    batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
+    batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, batch.bodyB, bodies.poses);
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;
-    batch.surfaces = !kFixedB && isMarked && HaveSurfaceVelocity(head[Record::kMarks]).Any() ? records : nullptr;
+    batch.hasSurface =
+        !kFixedB && isMarked && settings.surfaceVelocities && HaveSurfaceVelocity(head[Record::kMarks]).Any();
 
     // Contact points, halfway between the surfaces, and their center, where friction acts. The center is that of the
     // points that carried load in the last step: neither speculative points ahead nor those of a lifted side count.
@@ -236,12 +231,15 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     const auto anyPresses = pressing > zero;
     const Real perPoint = Real(1.0f) / Max(pointCount, Real(1.0f)),
                perPressing = Real(1.0f) / Max(pressing, Real(1.0f));
+    Real floats[Record::PointRows(Record::kMaxPoints)][kRowFloats];
+    for (int row = 0; row < Record::PointRows(batch.pointCount); ++row)
+        GatherRecordRow<N>(batch.contact, records, Record::kPoints + row, floats[row]);
     for (int i = 0; i < batch.pointCount; ++i) {
-        Real p[8];
-        GatherRecordRow<N>(batch.contact, records, Record::kPoints + i, p);
+        const Real* p = &floats[0][0] + Record::kPointFloats * i;
         const auto used = pointCount > Real(static_cast<float>(i));
-        const Vec3<Real> onA = rotation * VectorAt<Record::kOnA>(p);
-        const Vec3<Real> onB = between + rotationB * VectorAt<Record::kOnB>(p);
+        const Vec3<Real> onA = rotation * Vec3<Real>(p[Record::kOnA], p[Record::kOnA + 1], p[Record::kOnA + 2]);
+        const Vec3<Real> onB =
+            between + rotationB * Vec3<Real>(p[Record::kOnB], p[Record::kOnB + 1], p[Record::kOnB + 2]);
         const Real separation = Dot<Real>(n, Vec3<Real>(onB - onA));
         points[i] = onA + n * (separation * Real(0.5f));
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
@@ -258,7 +256,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     const Vec3<Real> armB = center + toSurface - between;
     if constexpr (kFixedB) {
         const float* rows[N];
-        for (int i = 0; i < N; ++i) rows[i] = bodies.states[bodyB[i]].VelocityRow();
+        for (int i = 0; i < N; ++i) rows[i] = bodies.states[batch.bodyB[i]].VelocityRow();
         Real velocity[8];
         GatherRows<N>(rows, velocity);
         batch.sideB.velocity.angular = Angular(velocity);
@@ -266,7 +264,6 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.sideB.velocity.linear = Linear(velocity) + turning;
         batch.sideB.acceleration = Cross<Real>(WithinARadian<Real>(Angular(velocity), settings.dt), turning);
     } else {
-        for (int i = 0; i < N; ++i) batch.sideB.body[i] = bodyB[i];
         batch.sideB.arm = armB;
         responses.Add(batch.sideB.inverse, armB, n, t1, t2);
     }
@@ -310,10 +307,11 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         }
     }
     if constexpr (kFixedB)
-        if (isMarked) AddSurfaceMotion(batch, head[Record::kMarks], records, settings.dt);
+        if (isMarked && settings.surfaceVelocities)
+            AddSurfaceMotion(batch, head[Record::kMarks], settings.surfaceVelocities, settings.dt);
     const auto finite = FiniteLanes(batch, responses, diagonals);
     if (!finite.All()) KeepLanes(batch, finite);
-    if (batch.bounces) PrepareBounces(batch, head[Record::kRestitution], bodyB, bodies, settings);
+    if (batch.bounces) PrepareBounces(batch, head[Record::kRestitution], bodies, settings);
     return (~finite).ToBits();
 }
 
@@ -335,8 +333,8 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                          \
-    template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const uint32_t(&)[lanes], \
-                                      const ConstSolverBodies&, const ContactPrepareSettings&);                     \
+    template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const ConstSolverBodies&, \
+                                      const ContactPrepareSettings&);                                               \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

@@ -14,12 +14,9 @@ using namespace contacts;
 template <int N, bool kFixedB>
 struct LaneRegion {
     using Batch = ContactBatch<N, kFixedB>;
-    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, collisions),
-                            kBounces = offsetof(Batch, restitution);
+    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, collisions);
     static constexpr size_t kCount = (kEnd - kBegin) / (N * sizeof(float));
-    static constexpr size_t kBounceCount = 3;
     static_assert(kBegin + kCount * N * sizeof(float) == kEnd);
-    static_assert(kBounces + kBounceCount * N * sizeof(float) <= sizeof(Batch));
 };
 
 template <int N, bool kFixedB>
@@ -35,9 +32,6 @@ void VisitLane(ContactBatch<N, kFixedB>& batch, int lane, ContactBatch<1, kFixed
     static_assert(Region::kCount == Single::kCount);
     for (size_t i = 0; i < Region::kCount; ++i)
         copy(LaneAt(batch, Region::kBegin, i, lane), LaneAt(single, Single::kBegin, i, 0));
-    if (batch.bounces)
-        for (size_t i = 0; i < Region::kBounceCount; ++i)
-            copy(LaneAt(batch, Region::kBounces, i, lane), LaneAt(single, Single::kBounces, i, 0));
 }
 
 // The impulses of the rows are applied to the bodies' velocities without the warm start: `sign` 1 takes them out of the
@@ -86,7 +80,8 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
     } else {
         after.contact[0] = batch.contact[lane];
         after.bodyA[0] = 0;
-        PrepareContacts<1, kFixedB>(after, records, {1}, bodies, settings);
+        after.bodyB[0] = 1;
+        PrepareContacts<1, kFixedB>(after, records, bodies, settings);
         if constexpr (kFixedB) {
             auto& side = after.sideB;
             side.velocity.linear -= side.acceleration * Real(elapsed);
@@ -103,7 +98,6 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
         for (int i = after.pointCount; i < ContactRecord::kMaxPoints; ++i) ClearRow<Real>(after.rows[i]);
     }
     MoveOutOfWarmStart(after, freeA, freeB, -1.0f);
-    if constexpr (!kFixedB) after.sideB.body[0] = batch.sideB.body[lane];
     // Rows that no lane had.
     for (; batch.pointCount < after.pointCount; ++batch.pointCount) {
         const int i = batch.pointCount;
@@ -111,10 +105,7 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
         for (int j = 0; j < i; ++j) batch.response[PairIndex(j, i)] = Wide<N>(0.0f);
     }
     // Another triangle may have another restitution.
-    if (after.bounces && !batch.bounces) {
-        batch.bounces = true;
-        batch.restitution = batch.closing = batch.acceleration = Wide<N>(0.0f);
-    }
+    batch.bounces |= after.bounces;
     VisitLane(batch, lane, after, [](void* to, const void* from) { std::memcpy(to, from, sizeof(float)); });
     const float times = __builtin_sqrtf(batch.collisions[lane]) + 1;
     batch.collisions.Set(lane, times * times);

@@ -31,7 +31,7 @@ FULCRUM_FORCE_INLINE void FindOutdated(ContactBatch<N, kFixedB>& batch, const Tw
 template <Pass kPass, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                        const ContactSolveSettings& settings) {
-    if (batch.bounces || (!kFixedB && batch.surfaces)) return SolveRareRows<kPass>(batch, states, settings);
+    if (batch.bounces || (!kFixedB && batch.hasSurface)) return SolveRareRows<kPass>(batch, states, settings);
     SolveRows<kPass, false>(batch, states, settings);
 }
 

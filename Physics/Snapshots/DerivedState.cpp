@@ -43,6 +43,7 @@ void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
     pairs.contacts.clear();
     pairs.records.clear();
     pairs.massOverrides.clear();
+    pairs.surfaceVelocities.clear();
     pairs.freeContacts_.clear();
     pairs.reported.resize(pairs.keepsReported_ ? count : 0);
     pairs.active.words_.assign((count + 63) / 64, 0);

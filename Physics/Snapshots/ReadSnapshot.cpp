@@ -244,7 +244,7 @@ Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sou
     SnapshotReader s(parts.Value().data);
     Found found;
     SnapshotAccess::VisitHead(s, found.head);
-    if (found.head.keepsMassOverrides != (world.listener != nullptr))
+    if (found.head.keepsListenersData != (world.listener != nullptr))
         return Error{ErrorCode::Unsupported,
                      world.listener ? "the world has a contact listener, and had none when the snapshot was saved"
                                     : "the world has no contact listener, and had one when the snapshot was saved"};

@@ -14,7 +14,7 @@ struct SnapshotHead {
     uint64_t step = 0;
     float lastSubstepDt = 0, stiffnessDt = 0;
     uint32_t bodies = 0, colliders = 0, pairs = 0, joints = 0;
-    bool keepsMassOverrides = false;
+    bool keepsListenersData = false;
 };
 
 // Instead of the hash of a body's shape: the body has no shape, or a mutable compound of its own.
@@ -77,11 +77,11 @@ private:
 
 template <class Stream>
 void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
-    auto& [settings, step, lastSubstepDt, stiffnessDt, bodies, colliders, pairs, joints, keepsMassOverrides] = head;
+    auto& [settings, step, lastSubstepDt, stiffnessDt, bodies, colliders, pairs, joints, keepsListenersData] = head;
     s.Begin(SnapshotSection::Head);
     s.Reserve(2048);
     VisitSystemSettings(s, settings);
-    s(step, lastSubstepDt, stiffnessDt, bodies, colliders, pairs, joints, keepsMassOverrides);
+    s(step, lastSubstepDt, stiffnessDt, bodies, colliders, pairs, joints, keepsListenersData);
     s.EndBlock();
 }
 
@@ -129,8 +129,8 @@ void SnapshotAccess::VisitColliders(Stream& s, Colliders& store) {
 
 template <class Stream, class Pairs, class Attach>
 void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
-    auto& [pairs, contacts, records, massOverrides, reported, ended, loads, loadVersion, active, table, free,
-           freeContacts, links, heads, size, keepsMassOverrides, keepsReported] = store;
+    auto& [pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion, active, table, free,
+           freeContacts, links, heads, size, keepsListenersData, keepsReported] = store;
     s.Begin(SnapshotSection::Pairs);
     const auto count = static_cast<uint32_t>(pairs.size());
     for (uint32_t i = 0; i < count; ++i) {
@@ -155,7 +155,10 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
                 const uint32_t contact = pairs[i].contact;
                 VisitContact(s, contacts[contact], pairs[i].pointCount);
                 VisitRecord(s, records[contact], pairs[i].pointCount);
-                if (keepsMassOverrides && records[contact].Has(ContactRecord::kMassOverride))
+                if (keepsListenersData && pairs[i].pointCount > 0 &&
+                    records[contact].Has(ContactRecord::kSurfaceVelocity))
+                    VisitSurfaceVelocity(s, surfaceVelocities[contact]);
+                if (keepsListenersData && records[contact].Has(ContactRecord::kMassOverride))
                     VisitMassOverride(s, massOverrides[contact]);
             }
             if (keepsReported) VisitReported(s, reported[i]);

@@ -277,11 +277,15 @@ void VisitRecord(Stream& s, Record& record, uint32_t points) {
     if (points == 0) return;
     s(normal, pointCount, twistRadius, impulse, frictionImpulse, twistImpulse);
     for (uint32_t i = 0; i < std::min<uint32_t>(points, ContactRecord::kMaxPoints); ++i) {
-        auto& [onA, surfaceA, onB, surfaceB] = all[i];
+        auto& [onA, onB] = all[i];
         s(onA, onB);
     }
-    if (!record.Has(ContactRecord::kSurfaceVelocity)) return;
-    for (int i = 0; i < ContactRecord::kSurfacePoints; ++i) s(all[i].surfaceA, all[i].surfaceB);
+}
+
+template <class Stream, class Velocity>
+void VisitSurfaceVelocity(Stream& s, Velocity& velocity) {
+    auto& [linear, angular] = velocity;
+    s(linear, angular);
 }
 
 // ---- Joints

@@ -45,7 +45,7 @@ SnapshotHead SnapshotAccess::HeadOf(const WorldState& world, const StepState& st
             count(world.colliders.colliders),
             count(world.pairs.pairs),
             count(world.joints.joints),
-            world.pairs.keepsMassOverrides_};
+            world.pairs.keepsListenersData_};
 }
 
 namespace {

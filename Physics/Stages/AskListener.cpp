@@ -91,7 +91,9 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
     const ContactChange change = AskAbout(listener, view, record.friction, record.restitution);
     record.friction = change.friction;
     record.restitution = change.restitution;
-    record.SetSurfaceVelocity(change.surfaceVelocity, change.surfaceAngularVelocity);
+    const Vector3 &linear = change.surfaceVelocity, &angular = change.surfaceAngularVelocity;
+    record.Set(ContactRecord::kSurfaceVelocity, !(linear.isZero(0) && angular.isZero(0)));
+    pairs.surfaceVelocities[contact] = {{linear[0], linear[1], linear[2]}, {angular[0], angular[1], angular[2]}};
     record.Set(ContactRecord::kMassOverride, !change.massOverride.IsNone());
     pairs.massOverrides[contact] = change.massOverride;
     record.Set(ContactRecord::kSensed, change.isSensor && !change.ignore);

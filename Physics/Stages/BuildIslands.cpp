@@ -45,8 +45,8 @@ void SortBodies(const BodyStore& bodies, const Islands& islands, SolverLayout& l
     for (uint32_t g = 0; g < islands.groups; ++g) layout.groups[g].bodiesEnd = next[g];
 }
 
-BatchRange MakeRange(uint32_t first, uint32_t contacts, uint32_t& batches) {
-    BatchRange range{first, contacts, batches, 0};
+BatchRange MakeRange(uint32_t contacts, uint32_t& batches) {
+    BatchRange range{batches, 0};
     batches += (contacts + kLanes - 1) / kLanes;
     range.end = batches;
     return range;
@@ -59,6 +59,33 @@ void GrowTo(Array<Batch>& batches, uint32_t count) {
     batches.clear();
     batches.reserve(count + count / 16 + 1);
     batches.resize(batches.capacity());
+}
+
+template <int N, bool kFixedB>
+void SetContact(ContactBatch<N, kFixedB>& batch, int lane, const Entry& entry) {
+    batch.contact[lane] = entry.constraint;
+    batch.bodyA[lane] = entry.bodyA;
+    batch.bodyB[lane] = entry.bodyB;
+}
+
+// The remaining lanes repeat the last contact, and are never written back.
+template <int N, bool kFixedB>
+void RepeatLast(ContactBatch<N, kFixedB>& batch) {
+    for (int lane = batch.count; lane < N; ++lane) {
+        batch.contact[lane] = batch.contact[batch.count - 1];
+        batch.bodyA[lane] = batch.bodyA[batch.count - 1];
+        batch.bodyB[lane] = batch.bodyB[batch.count - 1];
+    }
+}
+
+// A batch for each contact without a color.
+template <bool kFixedB>
+void SetContacts(Array<ContactBatch<1, kFixedB>>& batches, const Array<Entry>& entries) {
+    batches.resize(entries.size());
+    for (size_t i = 0; i < entries.size(); ++i) {
+        batches[i].count = 1;
+        SetContact(batches[i], 0, entries[i]);
+    }
 }
 
 void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring, const Islands& islands,
@@ -79,45 +106,50 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     std::span<const SortedJoint> joints = SortJoints(bodies, coloring, islands, store, layout, scratch);
     const std::span<const bool> hasTrees = FindGroupsWithTrees(bodies, islands, layout.trees, scratch);
     layout.colors.clear();
-    uint32_t movingFirst = 0, fixedFirst = 0;
     uint64_t used = 0;
     for (uint32_t g = 0; g < islands.groups; ++g) {
         layout.groups[g].colorsBegin = static_cast<uint32_t>(layout.colors.size());
         for (uint32_t c = 0; c < kColors; ++c) {
             const uint32_t key = g * kColors + c;
-            const uint32_t m = moving[key], f = fixed[key];
+            uint32_t &m = moving[key], &f = fixed[key];
             if (m + f == 0 && (joints.empty() || joints.front().place != key)) continue;
             used |= uint64_t(1) << c;
             ColorBatches color;
-            color.of[kMovingContacts] = MakeRange(movingFirst, m, layout.moving.count);
-            color.of[kFixedContacts] = MakeRange(fixedFirst, f, layout.fixed.count);
+            color.of[kMovingContacts] = MakeRange(m, layout.moving.count);
+            color.of[kFixedContacts] = MakeRange(f, layout.fixed.count);
+            m = color.of[kMovingContacts].begin * kLanes;
+            f = color.of[kFixedContacts].begin * kLanes;
             MakeJointBatches(bodies, store, key, hasTrees[g], joints, layout, color);
             layout.colors.push_back(color);
-            movingFirst += m;
-            fixedFirst += f;
         }
         layout.groups[g].colorsEnd = static_cast<uint32_t>(layout.colors.size());
     }
     layout.colorCount = static_cast<uint32_t>(std::popcount(used));
-    const auto sort = [&](Kind kind, std::span<uint32_t> next, Array<Entry>& sorted) {
-        ResizeTo(sorted, ExclusivePrefixSum(next));
+    const auto sort = [&](Kind kind, std::span<uint32_t> next, auto& list) {
+        GrowTo(list.batches, list.count);
+        for (uint32_t i = 0; i < list.count; ++i) list.batches[i].count = 0;
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
-            if (c < kColors) sorted[next[keyOf(c, entry)]++] = entry;
+            if (c == kColors) return;
+            const uint32_t place = next[keyOf(c, entry)]++;
+            SetContact(list.batches[place / kLanes], static_cast<int>(place % kLanes), entry);
+            ++list.batches[place / kLanes].count;
         });
+        for (uint32_t i = 0; i < list.count; ++i) RepeatLast(list.batches[i]);
     };
-    sort(Kind::Moving, moving, layout.moving.contacts);
-    sort(Kind::Fixed, fixed, layout.fixed.contacts);
+    sort(Kind::Moving, moving, layout.moving);
+    sort(Kind::Fixed, fixed, layout.fixed);
 }
 
-// Calls visit(entry) for the contacts of a group.
+// Calls visit(index of the contact) for the contacts of a group.
 template <class Visit>
 void VisitContacts(const SolverLayout& layout, const SolverGroup& group, Visit&& visit) {
     for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
-        const auto visitRange = [&](const Array<Entry>& contacts, const BatchRange& range) {
-            for (uint32_t i = 0; i < range.contacts; ++i) visit(contacts[range.first + i]);
+        const auto visitRange = [&](const auto& batches, const BatchRange& range) {
+            for (uint32_t i = range.begin; i < range.end; ++i)
+                for (int lane = 0; lane < batches[i].count; ++lane) visit(batches[i].contact[lane]);
         };
-        visitRange(layout.moving.contacts, layout.colors[c].of[kMovingContacts]);
-        visitRange(layout.fixed.contacts, layout.colors[c].of[kFixedContacts]);
+        visitRange(layout.moving.batches, layout.colors[c].of[kMovingContacts]);
+        visitRange(layout.fixed.batches, layout.colors[c].of[kFixedContacts]);
     }
 }
 
@@ -127,8 +159,8 @@ template <class Visit>
 void VisitContactsUnderLoad(const SolverLayout& layout, const PairStore& pairs, Visit&& visit) {
     for (const SolverGroup& group : layout.groups)
         if (group.effort.substeps > 0)
-            VisitContacts(layout, group, [&](const Entry& entry) {
-                const uint32_t pair = pairs.contacts[entry.constraint].pair;
+            VisitContacts(layout, group, [&](uint32_t contact) {
+                const uint32_t pair = pairs.contacts[contact].pair;
                 if (pair != PairStore::kNone) visit(SolvedContact{pair, group.effort.substeps});
             });
 }
@@ -153,8 +185,8 @@ void LimitImpulses(std::span<const SolvedContact> before, const SolverLayout& la
     std::fill(substeps.begin(), substeps.end(), static_cast<uint8_t>(usualSubsteps));
     for (const SolverGroup& group : layout.groups)
         if (group.effort.substeps > usualSubsteps)
-            VisitContacts(layout, group, [&](const Entry& entry) {
-                substeps[pairs.contacts[entry.constraint].pair] = static_cast<uint8_t>(group.effort.substeps);
+            VisitContacts(layout, group, [&](uint32_t contact) {
+                substeps[pairs.contacts[contact].pair] = static_cast<uint8_t>(group.effort.substeps);
             });
     for (const SolvedContact& solved : before) {
         const int most = 2 * substeps[solved.pair];
@@ -226,8 +258,8 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
     PlaceTrees(bodies, islands, joints.joints.size(), layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { GrowTo(list.batches, list.count); });
     const ConstraintColoring::Color& overflow = coloring.At(ConstraintColoring::kOverflow);
-    layout.overflowMoving.resize(overflow.Of(Kind::Moving).size());
-    layout.overflowFixed.resize(overflow.Of(Kind::Fixed).size());
+    SetContacts(layout.overflowMoving, overflow.Of(Kind::Moving));
+    SetContacts(layout.overflowFixed, overflow.Of(Kind::Fixed));
     MakeOverflowJoints(bodies, joints, coloring, layout.overflowJoints);
     ShareRows(layout);
     saved.areRestored = false;

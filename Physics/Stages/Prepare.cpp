@@ -9,8 +9,6 @@ namespace fulcrum {
 
 namespace {
 
-using Entry = ConstraintColoring::Entry;
-
 template <int N, bool kFixedB>
 void NoteDeepest(const PairStore& pairs, const ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
     Wide<N> lowest(0.0f);
@@ -27,10 +25,12 @@ void NoteDeepest(const PairStore& pairs, const ContactBatch<N, kFixedB>& batch, 
 }
 
 // Prefetches records and masses of the next contacts.
-FULCRUM_FORCE_INLINE void Prefetch(const BodyStore& bodies, const PairStore& pairs, std::span<const Entry> entries) {
-    for (const Entry& entry : entries) {
-        PrefetchLines(&pairs.records[entry.constraint], sizeof(ContactRecord));
-        for (uint32_t body : {entry.bodyA, entry.bodyB}) {
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void Prefetch(const BodyStore& bodies, const PairStore& pairs,
+                                   const ContactBatch<N, kFixedB>& batch) {
+    for (int lane = 0; lane < batch.count; ++lane) {
+        PrefetchLines(&pairs.records[batch.contact[lane]], sizeof(ContactRecord));
+        for (uint32_t body : {batch.bodyA[lane], batch.bodyB[lane]}) {
             __builtin_prefetch(&bodies.poses[body]);
             __builtin_prefetch(&bodies.masses[body]);
         }
@@ -50,14 +50,13 @@ template <int N, bool kFixedB>
 // For bodies created inside each other: limits the recovery speed and disables the warm start, because their velocities
 // are clamped to that speed.
 template <int N, bool kFixedB>
-[[gnu::cold]] void LimitPushes(const BodyStore& bodies, float mostSpeed, const uint32_t (&bodyB)[N],
-                               ContactBatch<N, kFixedB>& batch) {
+[[gnu::cold]] void LimitPushes(const BodyStore& bodies, float mostSpeed, ContactBatch<N, kFixedB>& batch) {
     for (int lane = 0; lane < N; ++lane) {
         const auto isCrowded = [&](uint32_t body) {
             const BodyDynamics& d = bodies.dynamics[body];
             return d.crowded && !d.dispersing;
         };
-        if (!isCrowded(batch.bodyA[lane]) && !isCrowded(bodyB[lane])) continue;
+        if (!isCrowded(batch.bodyA[lane]) && !isCrowded(batch.bodyB[lane])) continue;
         batch.maxPushSpeed.Set(lane, std::min(batch.maxPushSpeed[lane], mostSpeed));
         batch.inverseSoftDepth.Set(lane, 0.0f);  // at any depth
     }
@@ -73,41 +72,19 @@ struct ContactSource {
     ContactNote* notes;        // null without contact events
 };
 
-// Fills the batch with at most N contacts; remaining lanes repeat the last one and are never written back.
 template <int N, bool kFixedB>
-void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, std::span<const Entry> entries,
-          WorkerFindings& findings) {
-    batch.count = static_cast<int32_t>(entries.size());
-    uint32_t bodyB[N];
-    for (size_t lane = 0; lane < N; ++lane) {
-        const Entry& entry = entries[lane < entries.size() ? lane : entries.size() - 1];
-        batch.contact[lane] = entry.constraint;
-        batch.bodyA[lane] = entry.bodyA;
-        bodyB[lane] = entry.bodyB;
-    }
+void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
     const uint32_t unusable =
-        PrepareContacts<N, kFixedB>(batch, from.pairs.records.data(), bodyB, from.bodies.ForSolver(), from.settings);
+        PrepareContacts<N, kFixedB>(batch, from.pairs.records.data(), from.bodies.ForSolver(), from.settings);
     if (unusable != 0) ForgetContacts(from.pairs, batch, unusable);
     if (from.hasCrowds) [[unlikely]]
-        LimitPushes(from.bodies, from.depenetrationSpeed, bodyB, batch);
+        LimitPushes(from.bodies, from.depenetrationSpeed, batch);
     NoteDeepest(from.pairs, batch, findings);
-    batch.hasNotes = from.notes && std::ranges::any_of(entries, [&](const Entry& entry) {
-                         return AreReported(from.bodies.reportsContacts, entry.bodyA, entry.bodyB);
-                     });
-    if (batch.hasNotes) BeginNotes(batch, bodyB, from.bodies.ForSolver(), from.notes);
-}
-
-template <bool kFixedB>
-void FillRange(const ContactSource& from, ContactBatchList<kFixedB>& list, const BatchRange& range,
-               WorkerFindings& findings) {
-    std::span<const Entry> contacts = std::span(list.contacts).subspan(range.first, range.contacts);
-    for (uint32_t i = range.begin; i < range.end; ++i) {
-        const size_t n = std::min(contacts.size(), size_t(kLanes));
-        const std::span<const Entry> now = contacts.first(n);
-        contacts = contacts.subspan(n);
-        Prefetch(from.bodies, from.pairs, contacts.first(std::min(contacts.size(), size_t(kLanes))));
-        Fill(from, list.batches[i], now, findings);
-    }
+    batch.hasNotes = false;
+    if (!from.notes) return;
+    for (int lane = 0; lane < batch.count; ++lane)
+        batch.hasNotes |= AreReported(from.bodies.reportsContacts, batch.bodyA[lane], batch.bodyB[lane]);
+    if (batch.hasNotes) BeginNotes(batch, from.bodies.ForSolver(), from.notes);
 }
 
 // Batches per job for the large group, whose colors are split into several jobs.
@@ -117,8 +94,6 @@ BatchRange PieceOf(const BatchRange& range, uint32_t piece) {
     BatchRange part;
     part.begin = range.begin + skipped;
     part.end = std::min(part.begin + kPiece, range.end);
-    part.first = range.first + std::min(skipped * kLanes, range.contacts);
-    part.contacts = std::min(part.Count() * kLanes, range.contacts - std::min(skipped * kLanes, range.contacts));
     return part;
 }
 
@@ -163,7 +138,8 @@ public:
                      .restitutionSpeed = step.settings.restitutionSpeed,
                      .maxPushSpeed = step.settings.contactPushSpeed,
                      .dt = step.dt,
-                     .massOverrides = pairs.massOverrides.data()},
+                     .massOverrides = pairs.massOverrides.data(),
+                     .surfaceVelocities = pairs.surfaceVelocities.data()},
                     !crowd.crowded.empty(),
                     step.settings.depenetrationSpeed,
                     layout.notes.empty() ? nullptr : layout.notes.data()},
@@ -179,39 +155,37 @@ public:
         ForEachBatchList(
             layout_, [&](auto& list, BatchKind kind) { FillBatches(list, PieceOf(color.of[kind], piece), findings); });
     }
-    void FillOverflow(const ConstraintColoring::Color& overflow, WorkerFindings& findings) const {
+    void FillOverflow(WorkerFindings& findings) const {
         ForEachOverflowList(layout_, [&](auto& batches) {
-            for (size_t i = 0; i < batches.size(); ++i) FillSingle(batches[i], overflow, i, findings);
+            for (auto& batch : batches) FillRows(batch, findings);
         });
     }
 
 private:
-    template <bool kFixedB>
-    void FillBatches(ContactBatchList<kFixedB>& list, const BatchRange& range, WorkerFindings& findings) const {
-        FillRange(contacts_, list, range, findings);
+    template <int N, bool kFixedB>
+    void FillBatches(BatchList<ContactBatch<N, kFixedB>>& list, const BatchRange& range,
+                     WorkerFindings& findings) const {
+        for (uint32_t i = range.begin; i < range.end; ++i) {
+            if (i + 1 < range.end) Prefetch(contacts_.bodies, contacts_.pairs, list.batches[i + 1]);
+            FillRows(list.batches[i], findings);
+        }
     }
     template <class Batch>
     void FillBatches(BatchList<Batch>& list, const BatchRange& range, WorkerFindings& findings) const {
-        for (uint32_t i = range.begin; i < range.end; ++i) FillJoints(list.batches[i], findings);
+        for (uint32_t i = range.begin; i < range.end; ++i) FillRows(list.batches[i], findings);
+    }
+    template <int N, bool kFixedB>
+    void FillRows(ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) const {
+        Fill(contacts_, batch, findings);
     }
     template <int N>
-    void FillJoints(JointBatch<N>& batch, WorkerFindings& findings) const {
+    void FillRows(JointBatch<N>& batch, WorkerFindings& findings) const {
         PrepareJoints(batch, joints_.records.data(), joints_.types.data(), contacts_.bodies.ForSolver(), jointSettings_,
                       findings.joints);
     }
     template <int N>
-    void FillJoints(BallBatch<N>& batch, WorkerFindings& findings) const {
+    void FillRows(BallBatch<N>& batch, WorkerFindings& findings) const {
         PrepareJoints(batch, joints_.records.data(), contacts_.bodies.ForSolver(), jointSettings_, findings.joints);
-    }
-    // The i-th contact of a kind in the overflow.
-    template <bool kFixedB>
-    void FillSingle(ContactBatch<1, kFixedB>& batch, const ConstraintColoring::Color& overflow, size_t i,
-                    WorkerFindings& findings) const {
-        using Kind = ConstraintColoring::Kind;
-        Fill(contacts_, batch, std::span(&overflow.Of(kFixedB ? Kind::Fixed : Kind::Moving)[i], 1), findings);
-    }
-    void FillSingle(JointBatch<1>& batch, const ConstraintColoring::Color&, size_t, WorkerFindings& findings) const {
-        FillJoints(batch, findings);
     }
 
     ContactSource contacts_;
@@ -261,7 +235,7 @@ void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintC
             if (!group.isLarge) fillerOf(group).FillGroup(group, workers.findings[range.worker]);
         }
     });
-    fillerOf(layout.groups.front()).FillOverflow(coloring.At(ConstraintColoring::kOverflow), workers.findings.front());
+    fillerOf(layout.groups.front()).FillOverflow(workers.findings.front());
 
     FindDeepest(bodies, pairs, workers.findings, report);
     FindWorstJoints(joints, workers.findings, report);

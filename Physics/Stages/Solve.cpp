@@ -57,8 +57,7 @@ struct Phase {
 
 // Prefetches the next batch while this one is solved.
 FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) {
-    using Batch = ContactBatch<kLanes, false>;
-    PrefetchLines(&batch, offsetof(Batch, restitution));
+    PrefetchLines(&batch, sizeof batch);
 }
 template <class Batch>
 FULCRUM_FORCE_INLINE void Prefetch(const Batch&) {}
@@ -91,6 +90,7 @@ public:
           pseudo_(pseudo),
           pushes_(pushes),
           notes_(layout.notes.empty() ? nullptr : layout.notes.data()),
+          rare_{stores.pairs.records.data(), moved.store.poses.data(), stores.pairs.surfaceVelocities.data()},
           h_(effort.substepDt) {}
 
     // A large group: all workers, phase by phase.
@@ -287,7 +287,8 @@ private:
                                 .restitutionSpeed = effort_.contacts.restitutionSpeed,
                                 .maxPushSpeed = stores_.step.settings.contactPushSpeed,
                                 .dt = stores_.step.dt,
-                                .massOverrides = stores_.pairs.massOverrides.data()},
+                                .massOverrides = stores_.pairs.massOverrides.data(),
+                                .surfaceVelocities = stores_.pairs.surfaceVelocities.data()},
                                bodies_, batch);
                 break;
             }
@@ -354,6 +355,7 @@ private:
         ContactSolveSettings settings = effort_.contacts;
         settings.elapsed = h_ * (static_cast<float>(substep) + part);
         settings.unconstrained = bodies_.unconstrained.data()->row;
+        settings.rare = &rare_;
         settings.notes = notes_;
         return settings;
     }
@@ -367,6 +369,7 @@ private:
     BodyState* pseudo_;
     std::span<PushNote> pushes_;
     ContactNote* notes_;                 // by record; null without contact events
+    RareContactData rare_;
     float h_;                            // s, of a substep
     std::atomic<int> lastOutdated_ = 0;  // the substep, from 1, after which some contact was outdated last
 };

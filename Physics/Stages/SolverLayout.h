@@ -1,6 +1,6 @@
 // The colored constraints as the solver runs them: groups of islands, in each group color after color, in each color
-// batches of lanes, joints before contacts. Written by the BuildIslands stage where constraints began or ended; rows
-// are filled by Prepare.
+// batches of lanes, joints before contacts. Written by the BuildIslands stage where constraints began or ended, with the
+// constraints and bodies of the batches; their rows are filled by Prepare.
 #pragma once
 
 #include <Fulcrum/Constraints/Coloring.h>
@@ -35,9 +35,8 @@ struct SolverGroup {
 // Kinds of batches of a color, in the order of solving.
 enum BatchKind : uint32_t { kBalls, kJoints, kMovingContacts, kFixedContacts, kBatchKinds };
 
-// Batches [begin, end) of a kind; for contacts, they contain [first, first + contacts) of its list.
+// Batches [begin, end) of a kind.
 struct BatchRange {
-    uint32_t first = 0, contacts = 0;
     uint32_t begin = 0, end = 0;
     uint32_t Count() const { return end - begin; }
 };
@@ -61,15 +60,6 @@ template <class Batch>
 size_t HeapBytes(const BatchList<Batch>& list) {
     return list.batches.capacity() * sizeof(Batch);
 }
-template <bool kFixedB>
-struct ContactBatchList : BatchList<ContactBatch<kLanes, kFixedB>> {
-    Array<ConstraintColoring::Entry> contacts;  // by group and color
-};
-template <bool kFixedB>
-size_t HeapBytes(const ContactBatchList<kFixedB>& list) {
-    return HeapBytes(static_cast<const BatchList<ContactBatch<kLanes, kFixedB>>&>(list)) +
-           list.contacts.capacity() * sizeof(ConstraintColoring::Entry);
-}
 
 // A joint with a color. Batches contain joints with the same locks, preferably with the same number of rows.
 struct ListedJoint {
@@ -86,8 +76,8 @@ struct SolverLayout {
     Array<uint32_t> bodies;  // dynamic bodies with constraints, by group
     BatchList<BallBatch<kLanes>> balls;
     BatchList<JointBatch<kLanes>> joints;
-    ContactBatchList<false> moving;
-    ContactBatchList<true> fixed;
+    BatchList<ContactBatch<kLanes, false>> moving;
+    BatchList<ContactBatch<kLanes, true>> fixed;
     // Constraints without a color: solved serially after the first group's colors.
     Array<JointBatch<1>> overflowJoints;
     Array<ContactBatch<1, false>> overflowMoving;

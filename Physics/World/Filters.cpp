@@ -71,14 +71,14 @@ void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before) {
 void ChangeListener(WorldState& world, const ContactListener* listener) {
     world.listener = listener;
     RemoveAllForbiddenPairs(world);
-    world.pairs.KeepMassOverrides(listener != nullptr);
+    world.pairs.KeepListenersData(listener != nullptr);  // without surface velocities
     // Resets the previous listener's changes of contacts, and searches for pairs that it had forbidden.
     for (uint32_t i = 0; i < world.pairs.contacts.size(); ++i) {
         const uint32_t pair = world.pairs.contacts[i].pair;
         if (pair == PairStore::kNone) continue;
         CombineMaterials(world.bodies, world.pairs, pair);
-        world.pairs.records[i].SetSurfaceVelocity(Vector3::Zero(), Vector3::Zero());
-        for (const auto mark : {ContactRecord::kMassOverride, ContactRecord::kSensed})
+        for (const auto mark :
+             {ContactRecord::kSurfaceVelocity, ContactRecord::kMassOverride, ContactRecord::kSensed})
             world.pairs.records[i].Set(mark, false);
     }
     for (uint32_t body : world.bodies.awake) RequeueColliders(world.bodies, world.colliders, body);

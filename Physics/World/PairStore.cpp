@@ -94,12 +94,16 @@ uint32_t PairStore::AddContact(uint32_t pair) {
         freeContacts_.pop_back();
         contacts[index] = {};
         records[index] = {};
+        if (keepsListenersData_) surfaceVelocities[index] = {};
     } else {
         index = static_cast<uint32_t>(contacts.size());
         ReserveContacts(1);
         contacts.emplace_back();
         records.emplace_back();
-        if (keepsMassOverrides_) massOverrides.emplace_back();
+        if (keepsListenersData_) {
+            massOverrides.emplace_back();
+            surfaceVelocities.emplace_back();
+        }
     }
     contacts[index].pair = pair;
     pairs[pair].contact = index;
@@ -114,9 +118,10 @@ void PairStore::RemoveContact(uint32_t pair) {
     freeContacts_.push_back(index);
 }
 
-void PairStore::KeepMassOverrides(bool keep) {
-    keepsMassOverrides_ = keep;
+void PairStore::KeepListenersData(bool keep) {
+    keepsListenersData_ = keep;
     massOverrides.resize(keep ? contacts.size() : 0);
+    surfaceVelocities.assign(keep ? contacts.size() : 0, {});
 }
 
 void PairStore::KeepReported(bool keep) {
@@ -220,10 +225,10 @@ void PairStore::Remove(uint32_t index) {
 }
 
 size_t HeapBytes(const PairStore& store) {
-    const auto& [pairs, contacts, records, massOverrides, reported, ended, loads, loadVersion, active, table, free,
-                 freeContacts, links, heads, size, keepsMassOverrides, keepsReported] = store;
-    return HeapBytes(pairs, contacts, records, massOverrides, reported, ended, loads, loadVersion, active, table, free,
-                     freeContacts, links, heads, size, keepsMassOverrides, keepsReported);
+    const auto& [pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion, active, table, free,
+                 freeContacts, links, heads, size, keepsListenersData, keepsReported] = store;
+    return HeapBytes(pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion, active, table, free,
+                     freeContacts, links, heads, size, keepsListenersData, keepsReported);
 }
 
 }  // namespace fulcrum

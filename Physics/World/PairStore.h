@@ -62,9 +62,11 @@ public:
     Array<Pair> pairs;
     Array<PairContact> contacts;
     Array<ContactRecord> records;  // by contact
-    // By contact, used for records with kMassOverride; empty without a contact listener, which sets them.
+    // By contact: mass overrides of records with kMassOverride, and surface velocities. Empty without a contact
+    // listener, which sets them.
     Array<MassOverride> massOverrides;
-    void KeepMassOverrides(bool keep);
+    Array<SurfaceVelocity> surfaceVelocities;
+    void KeepListenersData(bool keep);
     // By pair, for its first manifold; empty without contact events. Kept while bodies sleep.
     Array<ReportedContact> reported;
     Array<ReportedContact> ended;  // for pairs removed since the last events
@@ -138,7 +140,7 @@ private:
     Array<Links> links_;     // by pair
     Array<uint32_t> heads_;  // by collider
     uint32_t size_ = 0;
-    bool keepsMassOverrides_ = false, keepsReported_ = false;
+    bool keepsListenersData_ = false, keepsReported_ = false;
 };
 
 }  // namespace fulcrum

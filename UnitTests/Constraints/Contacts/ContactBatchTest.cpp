@@ -260,6 +260,8 @@ TEST(ContactBatch, ABounceGivesBackNoMoreThanTheContactTook) {
             for (float& impulse : record.frictionImpulse) impulse = 0;
             record.twistImpulse = 0;
             auto batch = PrepareBatch<1, false>(contacts, i, kPrepare);
+            const RareContactData rare = contacts.Rare();
+            settings.rare = &rare;
             before = KineticEnergy(contacts, i);
             for (int k = 0; k < 3; ++k) SolveContactVelocities(batch, contacts.states.data(), settings);
             after[restitution] = KineticEnergy(contacts, i);

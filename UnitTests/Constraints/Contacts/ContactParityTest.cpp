@@ -16,7 +16,8 @@ void MoveSurfaces(RandomContacts& contacts, uint32_t seed) {
     RandomPoses random(seed);
     for (size_t i = 0; i < contacts.records.size(); i += 3) {
         const Vector3 linear = random.InBox(2.0f), angular = random.InBox(2.0f);
-        contacts.records[i].SetSurfaceVelocity(linear, angular);
+        contacts.records[i].Set(ContactRecord::kSurfaceVelocity, true);
+        contacts.surfaceVelocities[i] = {{linear[0], linear[1], linear[2]}, {angular[0], angular[1], angular[2]}};
     }
 }
 
@@ -38,10 +39,10 @@ NotedContacts Solved(uint32_t seed, bool surfacesMove) {
             .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 0, .impulseScale = 0, .slop = 0.0005f};
         settings.restitutionSpeed = 0.5f;
         settings.notes = contacts.notes.data();
-        uint32_t bodyB[N];
-        for (int lane = 0; lane < N; ++lane) bodyB[lane] = batch.bodyA[lane] + 1;
+        const RareContactData rare = contacts.Rare();
+        settings.rare = &rare;
         batch.hasNotes = true;
-        BeginNotes(batch, bodyB, contacts.Bodies(), contacts.notes.data());
+        BeginNotes(batch, contacts.Bodies(), contacts.notes.data());
         settings.Soften(60, 10, 1.0f / 240, 3);
         WarmStartContacts(batch, states);
         for (int substep = 1; substep <= 2; ++substep) {

@@ -15,6 +15,7 @@ struct RandomContacts {
     std::vector<BodyMass> masses;
     std::vector<BodyPose> poses;
     std::vector<ContactRecord> records;
+    std::vector<SurfaceVelocity> surfaceVelocities;  // by record, zero
 
     // fixedB: the second bodies have no mass.
     RandomContacts(uint32_t count, bool fixedB, uint32_t seed) {
@@ -28,6 +29,7 @@ struct RandomContacts {
     }
 
     SolverBodies Bodies() { return {states.data(), masses.data(), poses.data()}; }
+    RareContactData Rare() const { return {records.data(), poses.data(), surfaceVelocities.data()}; }
 
     InverseMass<float> MassOf(uint32_t body) const {
         const float* m = masses[body].Row();
@@ -105,24 +107,25 @@ private:
         for (int k = 0; k < 3; ++k) record.frictionImpulse[k] = friction[k];
         record.twistImpulse = random.Between(-0.1f, 0.1f);
         records.push_back(record);
+        surfaceVelocities.emplace_back();
     }
 };
 
 // Fills a batch with the contacts first .. first + N - 1; lanes beyond the last repeat it.
 template <int N, bool kFixedB>
 ContactBatch<N, kFixedB> PrepareBatch(RandomContacts& contacts, uint32_t first,
-                                      const ContactPrepareSettings& settings) {
+                                      ContactPrepareSettings settings) {
     ContactBatch<N, kFixedB> batch;
     const uint32_t left = static_cast<uint32_t>(contacts.records.size()) - first;
     batch.count = static_cast<int32_t>(left < N ? left : N);
-    uint32_t bodyB[N];
+    settings.surfaceVelocities = contacts.surfaceVelocities.data();
     for (uint32_t lane = 0; lane < N; ++lane) {
         const uint32_t used = lane < left ? lane : left - 1;
         batch.contact[lane] = first + used;
         batch.bodyA[lane] = 2 * (first + used);
-        bodyB[lane] = 2 * (first + used) + 1;
+        batch.bodyB[lane] = 2 * (first + used) + 1;
     }
-    PrepareContacts<N, kFixedB>(batch, contacts.records.data(), bodyB, contacts.Bodies(), settings);
+    PrepareContacts<N, kFixedB>(batch, contacts.records.data(), contacts.Bodies(), settings);
     return batch;
 }
 
