@@ -24,8 +24,20 @@ public:
         kColors;  // for constraints that fit no color (a body with more than 64 of them): solved serially
 
     struct Entry {
-        uint32_t constraint, bodyA, bodyB;
-        bool fixedA = false, fixedB = false;  // the body is not dynamic: constraints may share it
+        uint32_t constraint = 0;
+        // Below 2^31. fixed: the body is not dynamic, constraints may share it.
+        uint32_t bodyA : 31 = 0, fixedA : 1 = false;
+        uint32_t bodyB : 31 = 0, fixedB : 1 = false;
+        Entry() = default;
+        Entry(uint32_t itsConstraint, uint32_t itsBodyA, uint32_t itsBodyB, bool isFixedA, bool isFixedB)
+            : constraint(itsConstraint),
+              bodyA(itsBodyA & kBodies),
+              fixedA(isFixedA),
+              bodyB(itsBodyB & kBodies),
+              fixedB(isFixedB) {}
+
+    private:
+        static constexpr uint32_t kBodies = ~0u >> 1;
     };
     enum class Kind : uint8_t {
         Moving,  // contacts of two dynamic bodies

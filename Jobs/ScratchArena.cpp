@@ -20,11 +20,12 @@ void ScratchArena::AddBlock(size_t minimumBytes) {
 void ScratchArena::Reset() {
     if (blocks_.empty()) return;
     if (blocks_.size() > 1) {
-        const size_t total = capacity_;
+        // The sum of the blocks may be twice what was needed. A quarter more, since steps differ.
+        const size_t used = capacity_ - left_, room = (used + used / 4 + kAlignment - 1) & ~(kAlignment - 1);
         blocks_.clear();
         next_ = nullptr;
         left_ = capacity_ = 0;
-        AddBlock(total);
+        AddBlock(room);
     }
     next_ = blocks_.front().Begin();
     left_ = capacity_;

@@ -210,8 +210,8 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
     if (MaybeError e = Check(material)) return *e;
     world_.bodies.cold[id.index].material = material;
     VisitPairsOf(world_.bodies, world_.colliders, world_.pairs, {&id.index, 1}, [&](uint32_t first) {
-        for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
-            CombineMaterials(world_.bodies, world_.pairs, pair);
+        for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.MoreOf(pair))
+            CombineMaterials(world_.bodies, world_.colliders, world_.pairs, pair);
     });
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);

@@ -110,7 +110,7 @@ uint32_t ColliderCountOf(const Shape& shape) {
 // Calls visit(record) for the contacts of a pair in the last step.
 template <class Visit>
 void VisitRecords(PairStore& pairs, uint32_t pair, Visit&& visit) {
-    for (; pair != PairStore::kNone; pair = pairs.pairs[pair].more)
+    for (; pair != PairStore::kNone; pair = pairs.MoreOf(pair))
         if (pairs.pairs[pair].touching) visit(pairs.RecordOf(pairs.pairs[pair]));
 }
 // N s, along the normals.
@@ -191,7 +191,7 @@ Status BodyInterface::Remove(BodyId id) {
         world_.outsideFatBounds.Forget(i);
         // Its contacts end now. Its pairs are removed in the next step, together with those of other removed bodies.
         world_.pairs.VisitOf(i, [&](uint32_t pair) {
-            for (; pair != PairStore::kNone; pair = world_.pairs.pairs[pair].more)
+            for (; pair != PairStore::kNone; pair = world_.pairs.MoreOf(pair))
                 world_.pairs.pairs[pair].touching = false;
         });
     });

@@ -155,7 +155,7 @@ void PhysicsSystem::VisitContactsOf(BodyId body, FunctionRef<void(const ContactV
     const WorldState& world = *world_;
     if (!world.bodies.Find(body)) return;
     VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body.index, 1}, [&](uint32_t first) {
-        for (uint32_t index = first; index != PairStore::kNone; index = world.pairs.pairs[index].more)
+        for (uint32_t index = first; index != PairStore::kNone; index = world.pairs.MoreOf(index))
             VisitContact(world, index, visit);
     });
 }

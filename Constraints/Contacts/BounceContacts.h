@@ -51,7 +51,8 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
         const Real start = kRelax ? row.separation + approach[i] * h : row.separation;  // at the start of the substep
         gap[i] = Max(start, zero);
         const auto isImpact = ImpactSpeed(bounciness, approach[i], gap[i], h) > SlowestImpact(bounciness, settings);
-        isHit[i] = isImpact & (bounciness.restitution > zero) & (start <= approach[i] * h) & (row.inverseResponse > zero);
+        isHit[i] =
+            isImpact & (bounciness.restitution > zero) & (start <= approach[i] * h) & (row.inverseResponse > zero);
         const Real time = Min(gap[i] / Max(approach[i], Real(1e-30f)), h);
         hits.time = Select(isHit[i], Min(hits.time, time), hits.time);
     }

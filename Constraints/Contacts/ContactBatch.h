@@ -60,8 +60,13 @@ struct ContactBatch {
     bool bounces;           // some lane has restitution
     bool hasNotes = false;  // some lane reports contact events: see ContactNote
     bool hasSurface;        // second bodies are dynamic, and some lane has a surface velocity
+    uint16_t gentle = 0;    // lanes whose penetration recovery is limited to RareContactData::gentlePushSpeed
     // Lanes whose bodies moved so far relative to each other that they should collide again.
     uint16_t rotated = 0, slid = 0;
+    // How often the bodies collided in this step: they collide again after as many times the relative motion for which
+    // one manifold is valid (UpdateSeparations).
+    uint8_t collisions[N];
+    bool hasCollidedAgain;  // some lane
 
     Vec3<Real> normal, tangent1, tangent2;
     Vec3<Real> armA;
@@ -83,10 +88,6 @@ struct ContactBatch {
     Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
-    // How often the bodies collided in this step, squared: they collide again after as many times the relative motion
-    // for which one manifold is valid (UpdateSeparations).
-    Real collisions;
-    Real maxPushSpeed;      // m/s: limit of the penetration recovery speed
     Real inverseSoftDepth;  // 1/m, of the overlap from which rows stiffen, see ContactSolveSettings
 };
 
@@ -95,7 +96,6 @@ struct ContactNote;
 struct ContactPrepareSettings {
     float impulseScale;                           // dt of this substep / dt of the last: scales the warm start
     float restitutionSpeed;                       // m/s, see BounceContacts
-    float maxPushSpeed;                           // m/s
     float dt = 0;                                 // s, of the step
     const MassOverride* massOverrides = nullptr;  // by record, for those with kMassOverride; null if none has one
     const SurfaceVelocity* surfaceVelocities = nullptr;  // by record; null if none has one
@@ -106,15 +106,17 @@ struct RareContactData {
     const ContactRecord* records = nullptr;              // restitution
     const BodyPose* poses = nullptr;                     // accelerations, for contacts with restitution
     const SurfaceVelocity* surfaceVelocities = nullptr;  // as above
+    float gentlePushSpeed = 0;                           // m/s, <= maxPushSpeed: for lanes that are `gentle`
 };
 
 struct ContactSolveSettings {
     float inverseDt;  // 1/s, of the substep
     float elapsed;    // s since the start of the step: gives the motion of static and kinematic sides
     // Penetration is recovered by a soft row, see Soften.
-    float pushRate;      // 1/s: recovery speed per meter of overlap
-    float massScale;     // 0..1: softened effective mass / effective mass
-    float impulseScale;  // 0..1: fraction of the accumulated impulse that the soft row releases per iteration
+    float pushRate;          // 1/s: recovery speed per meter of overlap
+    float maxPushSpeed = 0;  // m/s: limit of the recovery speed
+    float massScale;         // 0..1: softened effective mass / effective mass
+    float impulseScale;      // 0..1: fraction of the accumulated impulse that the soft row releases per iteration
     // A soft row yields in proportion to its load, however deep the overlap. Where the recovery speed has reached its
     // limit, a heavy load would win, and a light body under a heavy one would be pressed through its support. So rows
     // become stiffer as the overlap grows beyond that depth, and beyond a quarter of the smaller inner radius: at twice
@@ -127,19 +129,19 @@ struct ContactSolveSettings {
     float restitutionSpeed = 0;      // m/s: restitution threshold, slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without the impulses that the next
                                      // substep's warm start applies again; null if there is none
-    const RareContactData* rare = nullptr;  // for batches with restitution or surface velocities
-    ContactNote* notes = nullptr;    // of all contacts, by record, for batches with notes: impact impulses are added
+    const RareContactData* rare = nullptr;  // for batches with restitution, surface velocities or gentle lanes
+    ContactNote* notes = nullptr;  // of all contacts, by record, for batches with notes: impact impulses are added
     // Position passes, see CorrectContacts:
     float baumgarte = 0;       // 0..1: fraction of an overlap that an iteration corrects
     float mostCorrection = 0;  // m, limit per iteration
 
-    // Sets pushRate, massScale and impulseScale from PushSoftnessOf (RowSoftness.h) for a substep of h seconds, and
-    // stiffening from the usual limit of the recovery speed, m/s.
-    void Soften(float frequency, float dampingRatio, float h, float maxPushSpeed);
+    // Sets maxPushSpeed and, from PushSoftnessOf (RowSoftness.h) for a substep of h seconds, pushRate, massScale and
+    // impulseScale, and stiffening from both.
+    void Soften(float frequency, float dampingRatio, float h, float itsMaxPushSpeed);
 };
 
-// Fills the rows of a batch whose contacts and bodies are set from the records. Returns the bit mask of lanes that got a
-// number that is not finite: these are inactive.
+// Fills the rows of a batch whose contacts and bodies are set from the records. Returns the bit mask of lanes that got
+// a number that is not finite: these are inactive.
 template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const ConstSolverBodies& bodies,
                          const ContactPrepareSettings& settings);

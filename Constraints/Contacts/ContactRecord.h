@@ -70,7 +70,8 @@ struct alignas(32) ContactRecord {
         marks = static_cast<float>(has ? others | mark : others);
     }
 };
-static_assert(sizeof(ContactRecord) == 160 && sizeof(ContactRecord::Point) == sizeof(float) * ContactRecord::kPointFloats);
+static_assert(sizeof(ContactRecord) == 160 &&
+              sizeof(ContactRecord::Point) == sizeof(float) * ContactRecord::kPointFloats);
 FULCRUM_CHECK_PLACE(ContactRecord, normal, ContactRecord::kHead, ContactRecord::kNormal);
 FULCRUM_CHECK_PLACE(ContactRecord, pointCount, ContactRecord::kHead, ContactRecord::kPointCount);
 FULCRUM_CHECK_PLACE(ContactRecord, friction, ContactRecord::kHead, ContactRecord::kFriction);

@@ -143,7 +143,7 @@ FULCRUM_FORCE_INLINE void SweepNormals(const ContactBatch<N, kFixedB>& batch, co
 }
 
 // One velocity iteration over all rows of a batch: friction, then the normal rows. kRare: contacts may have
-// restitution, or a surface velocity on a dynamic second body.
+// restitution, a surface velocity on a dynamic second body, or gentle lanes.
 template <Pass kPass, bool kRare, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                     const ContactSolveSettings& settings) {
@@ -178,7 +178,11 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             }
         }
     const auto findSpeeds = [&] {
-        const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate), fastest = -batch.maxPushSpeed;
+        const Real inverseDt(settings.inverseDt), pushRate(settings.pushRate);
+        Real fastest(-settings.maxPushSpeed);
+        if constexpr (kRare)
+            for (int lane = 0; lane < N; ++lane)
+                if (batch.gentle >> lane & 1) fastest.Set(lane, -settings.rare->gentlePushSpeed);
         for (int i = 0; i < batch.pointCount; ++i) {
             const auto& row = batch.rows[i];
             speed[i] = MotionOf(row, motion) + Max(row.separation, zero) * inverseDt;

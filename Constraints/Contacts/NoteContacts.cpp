@@ -74,10 +74,10 @@ void AddRowImpulses(const ContactBatch<N, kFixedB>& batch, ContactNote* notes) {
     AddImpulses(batch, normal, batch.frictionImpulse, notes);
 }
 
-#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                           \
-    template void BeginNotes(const ContactBatch<lanes, fixedB>&, const ConstSolverBodies&, ContactNote*);  \
-    template void AddRowImpulses(const ContactBatch<lanes, fixedB>&, ContactNote*);                                  \
-    template void AddImpulses(const ContactBatch<lanes, fixedB>&, const Wide<lanes>(&)[ContactNote::kMaxPoints],     \
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                       \
+    template void BeginNotes(const ContactBatch<lanes, fixedB>&, const ConstSolverBodies&, ContactNote*);        \
+    template void AddRowImpulses(const ContactBatch<lanes, fixedB>&, ContactNote*);                              \
+    template void AddImpulses(const ContactBatch<lanes, fixedB>&, const Wide<lanes>(&)[ContactNote::kMaxPoints], \
                               const Wide<lanes>(&)[3], ContactNote*);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)

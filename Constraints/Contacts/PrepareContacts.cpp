@@ -1,5 +1,6 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace fulcrum {
@@ -208,9 +209,9 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.tangent2 = t2;
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
-    batch.rotated = batch.slid = 0;
-    batch.collisions = Real(1.0f);
-    batch.maxPushSpeed = Real(settings.maxPushSpeed);
+    batch.rotated = batch.slid = batch.gentle = 0;
+    std::fill_n(batch.collisions, N, uint8_t{1});
+    batch.hasCollidedAgain = false;
     batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, batch.bodyB, bodies.poses);
     batch.pointCount = static_cast<int32_t>(HorizontalMax(pointCount));
     batch.bounces = HorizontalMax(head[Record::kRestitution]) > 0.0f;

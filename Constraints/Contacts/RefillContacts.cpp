@@ -1,5 +1,6 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 
@@ -14,7 +15,7 @@ using namespace contacts;
 template <int N, bool kFixedB>
 struct LaneRegion {
     using Batch = ContactBatch<N, kFixedB>;
-    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, collisions);
+    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, inverseSoftDepth);
     static constexpr size_t kCount = (kEnd - kBegin) / (N * sizeof(float));
     static_assert(kBegin + kCount * N * sizeof(float) == kEnd);
 };
@@ -107,8 +108,8 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
     // Another triangle may have another restitution.
     batch.bounces |= after.bounces;
     VisitLane(batch, lane, after, [](void* to, const void* from) { std::memcpy(to, from, sizeof(float)); });
-    const float times = __builtin_sqrtf(batch.collisions[lane]) + 1;
-    batch.collisions.Set(lane, times * times);
+    batch.collisions[lane] = static_cast<uint8_t>(std::min(batch.collisions[lane] + 1, 255));
+    batch.hasCollidedAgain = true;
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                         \

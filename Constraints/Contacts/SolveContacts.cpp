@@ -15,15 +15,21 @@ FULCRUM_FORCE_INLINE void FindOutdated(ContactBatch<N, kFixedB>& batch, const Tw
     Real arm = Dot<Real>(batch.armA, batch.armA);
     if constexpr (!kFixedB) arm = Max(arm, Dot<Real>(batch.sideB.arm, batch.sideB.arm));
     const Real perRadius = batch.inverseSoftDepth * batch.inverseSoftDepth;
+    Real collisions(1.0f);  // their number, squared
+    if (batch.hasCollidedAgain) [[unlikely]]
+        for (int lane = 0; lane < N; ++lane) {
+            const float times = batch.collisions[lane];
+            collisions.Set(lane, times * times);
+        }
     // t^2 r > 2 kMostDeviation times the inner radius, squared.
     const Real angle = Dot<Real>(moved.angular, moved.angular),
-               most = batch.collisions * Real(2 * kMostDeviation / kSoftFraction);
+               most = collisions * Real(2 * kMostDeviation / kSoftFraction);
     batch.rotated = static_cast<uint16_t>((angle * angle * arm * perRadius > most * most).ToBits() & used);
     if constexpr (kFixedB) {
         const Real along = Dot<Real>(moved.linear, batch.normal);
         const Real distance = Dot<Real>(moved.linear, moved.linear) - along * along;
         constexpr float kMost = kMostSliding / kSoftFraction;
-        const auto slid = distance * perRadius > batch.collisions * Real(kMost * kMost);
+        const auto slid = distance * perRadius > collisions * Real(kMost * kMost);
         batch.slid = static_cast<uint16_t>(slid.ToBits() & used);
     }
 }
@@ -31,14 +37,16 @@ FULCRUM_FORCE_INLINE void FindOutdated(ContactBatch<N, kFixedB>& batch, const Tw
 template <Pass kPass, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                        const ContactSolveSettings& settings) {
-    if (batch.bounces || (!kFixedB && batch.hasSurface)) return SolveRareRows<kPass>(batch, states, settings);
+    if (batch.bounces || (!kFixedB && batch.hasSurface) || batch.gentle != 0)
+        return SolveRareRows<kPass>(batch, states, settings);
     SolveRows<kPass, false>(batch, states, settings);
 }
 
 }  // namespace
 
-void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h, float maxPushSpeed) {
+void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h, float itsMaxPushSpeed) {
     const PushSoftness push = PushSoftnessOf(frequency, dampingRatio, h);
+    maxPushSpeed = itsMaxPushSpeed;
     pushRate = push.pushRate;
     massScale = push.softness.massScale;
     impulseScale = push.softness.impulseScale;

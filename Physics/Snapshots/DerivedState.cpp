@@ -35,7 +35,7 @@ void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
         2 * size_t{count} > places || pairs.table_.empty()) {
         while (2 * size_t{count} > places) places *= 2;
         for (Pair& pair : pairs.pairs) pair.exists = false;
-        pairs.table_.assign(places, {});
+        pairs.table_.assign(places, PairStore::kNone);
     }
     pairs.pairs.resize(count);
     pairs.loads.resize(count);
@@ -44,11 +44,11 @@ void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
     pairs.records.clear();
     pairs.massOverrides.clear();
     pairs.surfaceVelocities.clear();
-    pairs.freeContacts_.clear();
+    pairs.freeContact_ = PairStore::kNone;
+    pairs.freeContacts_ = 0;
     pairs.reported.resize(pairs.keepsReported_ ? count : 0);
     pairs.active.words_.assign((count + 63) / 64, 0);
     pairs.active.size_ = 0;
-    pairs.free_.reserve(pairs.pairs.capacity());
 }
 
 void SnapshotAccess::Resize(JointStore& joints, uint32_t count) {
@@ -168,8 +168,6 @@ void SnapshotAccess::AttachPair(const ColliderStore& colliders, PairStore& store
     if (!pair.exists) return;
     pair.bodyA = colliders.colliders[pair.colliderA].body;
     pair.bodyB = colliders.colliders[pair.colliderB].body;
-    pair.shapeA = static_cast<const ConvexShape*>(colliders.shapes[pair.colliderA].shape);
-    pair.shapeB = colliders.shapes[pair.colliderB].shape;
     if (pair.contact != PairStore::kNone)
         ListColor(coloring, KindOf(pair), EntryOf(pair), store.contacts[pair.contact].color);
 }

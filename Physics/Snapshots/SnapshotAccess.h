@@ -33,6 +33,9 @@ struct SnapshotAccess {
     // attach(i, before): called for each index; before: KeyOf the previous pair at that index.
     template <class Stream, class Pairs, class Attach>
     static void VisitPairs(Stream& s, Pairs& pairs, const Attach& attach);
+    // Indices of removed pairs.
+    template <class Stream, class Pairs>
+    static void VisitFree(Stream& s, Pairs& pairs);
     template <class Stream, class Joints>
     static bool VisitJoints(Stream& s, Joints& joints);
     template <class Stream, class Sleeping>
@@ -71,7 +74,7 @@ private:
     static constexpr uint64_t kNoKey = ~uint64_t{0};
     static uint64_t KeyOf(const PairStore& pairs, uint32_t index) {
         const Pair& pair = pairs.pairs[index];
-        return pair.exists && !pair.isMore ? PairStore::Key(pair.colliderA, pair.colliderB) : kNoKey;
+        return pair.exists && !pair.isMore ? pairs.KeyOf(index) : kNoKey;
     }
 };
 
@@ -129,8 +132,9 @@ void SnapshotAccess::VisitColliders(Stream& s, Colliders& store) {
 
 template <class Stream, class Pairs, class Attach>
 void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
-    auto& [pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion, active, table, free,
-           freeContacts, links, heads, size, keepsListenersData, keepsReported] = store;
+    auto& [pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion, active,
+           table, firstFree, lastFree, freeCount, freeContact, freeContacts, links, heads, size, keepsListenersData,
+           keepsReported] = store;
     s.Begin(SnapshotSection::Pairs);
     const auto count = static_cast<uint32_t>(pairs.size());
     for (uint32_t i = 0; i < count; ++i) {
@@ -145,12 +149,16 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
         s.Reserve(kMostOfPair);
         const uint64_t before = Stream::kWrites ? kNoKey : KeyOf(store, i);
         bool isActive = active.Contains(i), hasContact = pairs[i].contact != PairStore::kNone;
-        if (VisitPair(s, pairs[i], isActive, hasContact)) {
+        uint32_t more = Stream::kWrites ? store.MoreOf(i) : PairStore::kNone;
+        if (VisitPair(s, pairs[i], isActive, hasContact, more)) {
             auto& [next, previous] = links[i];
             if (!pairs[i].isMore) s(next, previous);
             VisitLoad(s, loads[i]);
             if constexpr (!Stream::kWrites)
-                if (hasContact) store.AddContact(i);
+                if (hasContact) {
+                    store.AddContact(i);
+                    contacts[pairs[i].contact].more = more;
+                }
             if (hasContact) {
                 const uint32_t contact = pairs[i].contact;
                 VisitContact(s, contacts[contact], pairs[i].pointCount);
@@ -172,10 +180,27 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
     s.Begin(SnapshotSection::PairLists);
     s.Reserve(64);
     s(size);
-    s.List(free);
+    VisitFree(s, store);
     s.List(heads);
     VisitList(s, ended, 32, [&](auto& contact) { VisitReported(s, contact); });
     s.EndBlock();
+}
+
+template <class Stream, class Pairs>
+void SnapshotAccess::VisitFree(Stream& s, Pairs& store) {
+    uint32_t count = store.freeCount_;
+    s.Reserve(sizeof count * (size_t{count} + 1));
+    s(count);
+    if constexpr (Stream::kWrites) {
+        for (uint32_t i = store.firstFree_; i != PairStore::kNone; i = store.pairs[i].colliderB) s(i);
+    } else {
+        store.firstFree_ = store.lastFree_ = PairStore::kNone;
+        store.freeCount_ = 0;
+        for (uint32_t left = count; left > 0 && !s.HasFailed(); --left) {
+            const uint32_t i = s.template Get<uint32_t>();
+            if (i < store.pairs.size() && !store.pairs[i].exists) store.Free(i);
+        }
+    }
 }
 
 template <class Stream, class Joints>

@@ -231,12 +231,12 @@ void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
 
 inline constexpr size_t kMostOfPair = 512;
 
-// Except shapes and bodies, which are derived from the colliders, and the contact; hasContact: whether there is one.
-// Returns false if there is no pair.
+// Except bodies, which are derived from the colliders, and the contact; hasContact: whether there is one.
+// more: of surfaces, see PairContact. Returns false if there is no pair.
 template <class Stream, class Pair>
-bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact) {
-    auto& [bodyA, bodyB, colliderA, colliderB, shapeA, shapeB, cache, contact, more, pointCount, exists, fixedB, offset,
-           surface, touching, onSeam, isMore, material] = pair;
+bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact, uint32_t& more) {
+    auto& [bodyA, bodyB, colliderA, colliderB, cache, contact, pointCount, exists, fixedB, offset, surface, touching,
+           onSeam, isMore, material] = pair;
     auto& [kind, indexA, indexB, axis] = cache;
     const uint8_t bits = VisitBits(s, exists, fixedB, offset, surface, touching, onSeam, isMore, isActive);
     if constexpr (!Stream::kWrites) {
@@ -259,10 +259,10 @@ bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact) {
     return true;
 }
 
-// Except the pair's index; for a pair with this many points.
+// Except the indices of pairs; for a pair with this many points.
 template <class Stream, class Contact>
 void VisitContact(Stream& s, Contact& contact, uint32_t points) {
-    auto& [reference, features, color, triangle, pair] = contact;
+    auto& [reference, features, color, triangle, pair, more] = contact;
     s(reference, triangle, color.color);
     if (color.color != ColorSlot{}.color) s(color.slot);
     for (uint32_t i = 0; i < std::min<uint32_t>(points, Manifold::kMaxPoints); ++i) s(features[i]);

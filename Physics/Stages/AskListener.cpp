@@ -62,9 +62,10 @@ ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& coll
                   ofB = Rotate(bodies.RotationOf(pair.bodyB), InverseRotate(bInA, Vector3(n[0], n[1], n[2])));
     const auto squaredTurn = [&](uint32_t body) { return LengthSquared(bodies.AngularVelocityOf(body)); };
     ContactAxes axes{squaredTurn(pair.bodyA) <= squaredTurn(pair.bodyB) ? ofA : ofB};
-    axes.besideA = (axes.normal - ofA) * pair.shapeA->ConvexRadius();
-    if (pair.shapeB->IsConvex())
-        axes.besideB = (ofB - axes.normal) * static_cast<const ConvexShape&>(*pair.shapeB).ConvexRadius();
+    const PairShapes shapes = ShapesOf(colliders, pair);
+    axes.besideA = (axes.normal - ofA) * shapes.a.ConvexRadius();
+    if (shapes.b.IsConvex())
+        axes.besideB = (ofB - axes.normal) * static_cast<const ConvexShape&>(shapes.b).ConvexRadius();
     return View(bodies, colliders, pairs, index, axes, room);
 }
 
@@ -87,7 +88,7 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
     ContactRecord& record = pairs.records[contact];
     ContactView::Point room[ContactRecord::kMaxPoints];
     const ContactView view = ViewContact(bodies, colliders, pairs, index, room);
-    CombineMaterials(bodies, pairs, index);
+    CombineMaterials(bodies, colliders, pairs, index);
     const ContactChange change = AskAbout(listener, view, record.friction, record.restitution);
     record.friction = change.friction;
     record.restitution = change.restitution;

@@ -79,7 +79,7 @@ void NoteStopped(uint32_t body, WorkerFindings& findings) {
 void ForgetImpulses(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, JointStore& joints,
                     uint32_t body) {
     VisitPairsOf(bodies, colliders, pairs, {&body, 1}, [&](uint32_t first) {
-        for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.pairs[pair].more) {
+        for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.MoreOf(pair)) {
             if (pairs.pairs[pair].contact == PairStore::kNone) continue;
             ContactRecord& record = pairs.RecordOf(pairs.pairs[pair]);
             std::fill(std::begin(record.impulse), std::end(record.impulse), 0.0f);

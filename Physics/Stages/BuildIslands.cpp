@@ -70,11 +70,12 @@ void SetContact(ContactBatch<N, kFixedB>& batch, int lane, const Entry& entry) {
 
 // The remaining lanes repeat the last contact, and are never written back.
 template <int N, bool kFixedB>
-void RepeatLast(ContactBatch<N, kFixedB>& batch) {
-    for (int lane = batch.count; lane < N; ++lane) {
-        batch.contact[lane] = batch.contact[batch.count - 1];
-        batch.bodyA[lane] = batch.bodyA[batch.count - 1];
-        batch.bodyB[lane] = batch.bodyB[batch.count - 1];
+void RepeatLast(ContactBatch<N, kFixedB>& batch, int count) {
+    batch.count = count;
+    for (int lane = count; lane < N; ++lane) {
+        batch.contact[lane] = batch.contact[count - 1];
+        batch.bodyA[lane] = batch.bodyA[count - 1];
+        batch.bodyB[lane] = batch.bodyB[count - 1];
     }
 }
 
@@ -127,14 +128,15 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     layout.colorCount = static_cast<uint32_t>(std::popcount(used));
     const auto sort = [&](Kind kind, std::span<uint32_t> next, auto& list) {
         GrowTo(list.batches, list.count);
-        for (uint32_t i = 0; i < list.count; ++i) list.batches[i].count = 0;
+        for (uint32_t i = 0; i < list.count; ++i) list.batches[i].count = kLanes;
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
             if (c == kColors) return;
             const uint32_t place = next[keyOf(c, entry)]++;
             SetContact(list.batches[place / kLanes], static_cast<int>(place % kLanes), entry);
-            ++list.batches[place / kLanes].count;
         });
-        for (uint32_t i = 0; i < list.count; ++i) RepeatLast(list.batches[i]);
+        // Each place is now the end of its contacts, which is within their last batch unless that is full.
+        for (const uint32_t place : next)
+            if (place % kLanes > 0) RepeatLast(list.batches[place / kLanes], static_cast<int>(place % kLanes));
     };
     sort(Kind::Moving, moving, layout.moving);
     sort(Kind::Fixed, fixed, layout.fixed);

@@ -37,11 +37,10 @@ void MakeContact(const CollideStores& stores, const PairView& view, uint32_t ind
 }
 
 // What follows from the contact of a pair with a convex shape or a plane.
-PairChange LookAtContact(const CollideStores& stores, uint32_t index, const RelativePose& bInA,
+PairChange LookAtContact(const CollideStores& stores, uint32_t index, PairShapes shapes, const RelativePose& bInA,
                          WorkerFindings& findings) {
     const Pair& pair = stores.pairs.pairs[index];
-    if (pair.pointCount > 0)
-        NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, bInA, findings);
+    if (pair.pointCount > 0) NoteOverlap(stores, index, shapes, bInA, findings);
     const PairChange change = NoteTouching(stores, index, findings);
     if (pair.pointCount == 0) return PairChange::Ended;  // also if the listener had ignored it
     return TouchesSleepingBody(stores.bodies, pair) ? PairChange::WakesOther : change;
@@ -56,9 +55,11 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(stores.colliders, pair))
         return PairChange::Dead;
 
-    const PairReach reach(stores, pair);
-    if (pair.contact == PairStore::kNone && !pair.offset && reach.AreFarApart(stores, pair)) return PairChange::None;
-    const float reachAhead = reach.WithRotation(stores, pair);
+    const PairShapes shapes = ShapesOf(stores.colliders, pair);
+    const PairReach reach(stores, pair, shapes);
+    if (pair.contact == PairStore::kNone && !pair.offset && reach.AreFarApart(stores, pair, shapes))
+        return PairChange::None;
+    const float reachAhead = reach.WithRotation(stores, pair, shapes);
     if (pair.surface) return CollideWithSurface(stores, changes, index, reachAhead, findings);
     const PairView view = ViewPair(stores, index);
     if (pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact])) {
@@ -74,7 +75,7 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
         WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair));
         contact.reference = view.bInA;
     }
-    return LookAtContact(stores, index, view.bInA, findings);
+    return LookAtContact(stores, index, shapes, view.bInA, findings);
 }
 
 // Prefetches data of the next pairs while this one is collided.
@@ -135,9 +136,9 @@ void AddNewContacts(const CollideStores& stores, PairUpdates& updates, const Ste
             const uint32_t index = all[i]->contact.pair, contact = pairs.pairs[index].contact;
             pairs.contacts[contact] = all[i]->contact;
             pairs.records[contact] = all[i]->record;
-            CombineMaterials(stores.bodies, pairs, index);
-            updates.changes[index] =
-                LookAtContact(stores, index, pairs.contacts[contact].reference, workers.findings[range.worker]);
+            CombineMaterials(stores.bodies, stores.colliders, pairs, index);
+            updates.changes[index] = LookAtContact(stores, index, ShapesOf(stores.colliders, pairs.pairs[index]),
+                                                   pairs.contacts[contact].reference, workers.findings[range.worker]);
         }
     });
     // Any worker may find all of as many in a later step. The lists of the first step with very many, in which most

@@ -13,7 +13,7 @@ namespace {
 
 template <class Visit>
 void VisitManifolds(const PairStore& pairs, uint32_t pair, Visit&& visit) {
-    for (; pair != PairStore::kNone; pair = pairs.pairs[pair].more) visit(pair);
+    for (; pair != PairStore::kNone; pair = pairs.MoreOf(pair)) visit(pair);
 }
 
 int CommonFeatures(const PairStore& pairs, uint32_t index, const Manifold& manifold) {
@@ -31,9 +31,10 @@ void Write(const CollideStores& stores, const PairView& view, uint32_t index, co
     place.triangle = contact.triangle;
     if (pair.material != contact.material || pair.isMore) {
         pair.material = contact.material;
-        CombineMaterials(stores.bodies, stores.pairs, index);
+        CombineMaterials(stores.bodies, stores.colliders, stores.pairs, index);
     }
-    WriteManifold(stores, {pair, view.bodyBInA, view.bInA}, contact.manifold, place, stores.pairs.RecordOf(pair));
+    WriteManifold(stores, {pair, view.shapes, view.bodyBInA, view.bInA}, contact.manifold, place,
+                  stores.pairs.RecordOf(pair));
 }
 
 // Motion of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
@@ -106,7 +107,7 @@ void FindSurfaceManifolds(const CollideStores& stores, const PairView& view, uin
         const Pair& pair = stores.pairs.pairs[index];
         if (pair.pointCount > 0) touched.push_back(stores.pairs.contacts[pair.contact].triangle);
     });
-    CollideSurface(*view.pair.shapeA, static_cast<const SurfaceShape&>(*view.pair.shapeB), view.bInA, settings,
+    CollideSurface(view.shapes.a, static_cast<const SurfaceShape&>(view.shapes.b), view.bInA, settings,
                    {MotionInA(stores, view), touched}, findings.surface);
     findings.libccd += findings.surface.Counters();
 }
@@ -131,8 +132,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     bool wakes = false;
     VisitManifolds(stores.pairs, first, [&](uint32_t index) {
         Pair& pair = stores.pairs.pairs[index];
-        if (pair.pointCount > 0)
-            NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
+        if (pair.pointCount > 0) NoteOverlap(stores, index, view.shapes, view.bInA, findings);
         const PairChange change = NoteTouching(stores, index, findings);
         wakes |= TouchesSleepingBody(stores.bodies, pair);
         if (index == first) ofFirst = change;

@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
 #include <Fulcrum/Physics/Stages/CrowdPlaces.h>
+#include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 
 #include <algorithm>
@@ -88,8 +89,8 @@ Vector3 ContactNormal(const BodyStore& bodies, const PairStore& pairs, uint32_t 
 }
 
 RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& colliders, const Pair& pair,
-                                 const RelativePose& bInA) {
-    const float offset = kCenterOffset * (pair.shapeA->InnerRadius() + pair.shapeB->InnerRadius());
+                                 PairShapes shapes, const RelativePose& bInA) {
+    const float offset = kCenterOffset * (shapes.a.InnerRadius() + shapes.b.InnerRadius());
     if (LengthSquared(bInA.position) > offset * offset) return bInA;
     Vector3 away = PointInBall(pair.bodyB) - PointInBall(pair.bodyA);
     away = InverseRotate(bodies.RotationOf(pair.bodyA), away);
@@ -97,24 +98,26 @@ RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& c
     return {bInA.position + Normalized(away, Vector3(0, 1, 0)) * offset, bInA.rotation};
 }
 
-void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
-                 const PairStore& pairs, uint32_t index, const RelativePose& bInA, WorkerFindings& findings) {
-    const Pair& pair = pairs.pairs[index];
-    if (!pair.fixedB && pair.shapeB->IsConvex()) {
-        const float deep = DeepOverlapDistance(*pair.shapeA, *pair.shapeB);
+void NoteOverlap(const CollideStores& stores, uint32_t index, PairShapes shapes, const RelativePose& bInA,
+                 WorkerFindings& findings) {
+    const BodyStore& bodies = stores.bodies;
+    const Pair& pair = stores.pairs.pairs[index];
+    if (!pair.fixedB && shapes.b.IsConvex()) {
+        const float deep = DeepOverlapDistance(shapes.a, shapes.b);
         if (LengthSquared(bInA.position) < deep * deep)
             for (const uint32_t body : {pair.bodyA, pair.bodyB}) findings.deepOverlaps.push_back(body);
     }
     const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
     const bool isPlaced = !bodies.placed.empty() && (bodies.cold[pair.bodyA].placed || bodies.cold[pair.bodyB].placed);
     if (!isPlaced && a.crowded == 0 && b.crowded == 0) return;
-    const float radii = pair.shapeA->InnerRadius() + (pair.fixedB ? 0.0f : pair.shapeB->InnerRadius());
-    const DeepestPoint deepest = DeepestPointOf(bodies, pairs, index, ContactNormal(bodies, pairs, index));
+    const float radii = shapes.a.InnerRadius() + (pair.fixedB ? 0.0f : shapes.b.InnerRadius());
+    const DeepestPoint deepest =
+        DeepestPointOf(bodies, stores.pairs, index, ContactNormal(bodies, stores.pairs, index));
     const bool overlaps = deepest.separation < -kCrowdedOverlap * radii;
     // A fast approach is an impact, not a placement, and is solved normally.
-    const bool wasPut = isPlaced && overlaps && deepest.approach < settings.depenetrationSpeed;
+    const bool wasPut = isPlaced && overlaps && deepest.approach < stores.step.settings.depenetrationSpeed;
     const auto note = [&](uint32_t body, uint8_t level, uint8_t levelOfOther) {
-        if (level == 0 && !(wasPut && !joints.HasAny(body))) return;
+        if (level == 0 && !(wasPut && !stores.joints.HasAny(body))) return;
         const uint8_t now = overlaps ? kOverlaps : uint8_t(std::max<int>(levelOfOther, 1) - 1);
         if (now > 0) findings.crowdedOverlaps.push_back(body << kLevelBits | now);
     };

@@ -6,22 +6,25 @@
 #pragma once
 
 #include <Fulcrum/Physics/Stages/StepState.h>
+#include <Fulcrum/Physics/World/PairShapes.h>
 
 #include <cmath>
 
 namespace fulcrum {
+
+struct CollideStores;
 
 // If the centers of two convex shapes coincide, their separating direction is undefined. Then each body is treated as
 // displaced by a thousandth of the inner radii towards its PointInBall: this is consistent for all pairs of a crowd,
 // and its bodies are pushed out in all directions. Returns `bInA`, the relative pose of the shapes, with that offset if
 // needed.
 RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& colliders, const Pair& pair,
-                                 const RelativePose& bInA);
+                                 PairShapes shapes, const RelativePose& bInA);
 
 // Records in `findings` which bodies of a pair overlap deeply, and which are crowded or still are. bInA: relative pose
 // of the shapes.
-void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
-                 const PairStore& pairs, uint32_t pair, const RelativePose& bInA, WorkerFindings& findings);
+void NoteOverlap(const CollideStores& stores, uint32_t pair, PairShapes shapes, const RelativePose& bInA,
+                 WorkerFindings& findings);
 // Merges the workers' findings into `crowd`, and marks the crowded bodies. One thread.
 void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
 
@@ -46,7 +49,7 @@ void VisitImmovableContacts(const BodyStore& bodies, const ColliderStore& collid
                             uint32_t body, Visitor&& visit) {
     VisitColliders(bodies, colliders, body, [&](uint32_t collider) {
         pairs.VisitOf(collider, [&](uint32_t first) {
-            for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.pairs[pair].more)
+            for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.MoreOf(pair))
                 if (pairs.pairs[pair].fixedB && pairs.pairs[pair].touching) visit(pair);
         });
     });

@@ -29,7 +29,8 @@ struct ContactSources {
 
 // m: points without impulse touch within this separation. before: the pair touched in the last step.
 float TouchDistance(const ContactSources& from, uint32_t first, bool before) {
-    return before ? kEndFraction * SpeculativeDistance(from.settings, from.pairs.pairs[first]) : 0.0f;
+    return before ? kEndFraction * SpeculativeDistance(from.settings, ShapesOf(from.colliders, from.pairs.pairs[first]))
+                  : 0.0f;
 }
 
 ContactView ViewOf(const ContactSources& from, uint32_t index, ContactView::Point (&room)[ContactRecord::kMaxPoints]) {
@@ -58,7 +59,7 @@ bool Touches(const ContactSources& from, uint32_t index, float most) {
 // Calls visit(manifold) for the manifolds of a pair that touch.
 template <class Visit>
 void VisitTouching(const ContactSources& from, uint32_t first, float most, Visit&& visit) {
-    for (uint32_t i = first; i != PairStore::kNone; i = from.pairs.pairs[i].more)
+    for (uint32_t i = first; i != PairStore::kNone; i = from.pairs.MoreOf(i))
         if (Touches(from, i, most)) visit(i);
 }
 

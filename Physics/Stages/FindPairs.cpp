@@ -153,8 +153,6 @@ void DescribePair(const BodyStore& bodies, const ColliderStore& colliders, PairS
     const ColliderShape& a = colliders.shapes[pair.colliderA];
     const ColliderShape& b = colliders.shapes[pair.colliderB];
     pair.offset = a.offset || b.offset;
-    pair.shapeA = static_cast<const ConvexShape*>(a.shape);  // dynamic bodies have convex shapes
-    pair.shapeB = b.shape;
     pair.surface = b.shape->IsSurface();
 }
 
@@ -180,7 +178,7 @@ void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std:
     for (const uint32_t index : added.first(count)) {
         if (!pairs.pairs[index].surface) continue;
         pairs.AddContact(index);
-        CombineMaterials(bodies, pairs, index);
+        CombineMaterials(bodies, colliders, pairs, index);
     }
 }
 

@@ -78,9 +78,9 @@ bool NormalTurned(const PairView& v, const RelativePose& reference, const Vector
 }
 
 // Whether the bounding spheres of two bodies are farther apart than `distance`.
-bool BallsApart(const CollideStores& stores, const Pair& pair, float distance) {
+bool BallsApart(const CollideStores& stores, const Pair& pair, PairShapes shapes, float distance) {
     const Vector3 between = stores.OffsetOf(pair.bodyA, pair.bodyB);
-    const float reach = pair.shapeA->OuterRadius() + pair.shapeB->OuterRadius() + distance;
+    const float reach = shapes.a.OuterRadius() + shapes.b.OuterRadius() + distance;
     return LengthSquared(between) > reach * reach;
 }
 
@@ -105,32 +105,32 @@ float ClosingMotion(const CollideStores& stores, const Pair& pair) {
 
 // m: how much farther two pieces may extend by rotating within the step; convex ones at most to their bounding spheres.
 // For a rotating surface, the part near the other piece counts.
-float TurningMotion(const CollideStores& stores, const Pair& pair) {
+float TurningMotion(const CollideStores& stores, const Pair& pair, PairShapes shapes) {
     const auto angleOf = [&](uint32_t body) { return stores.step.dt * Length(stores.bodies.AngularVelocityOf(body)); };
     const auto ofConvex = [&](uint32_t body, const Shape& shape) {
         const float outer = shape.OuterRadius();
         return std::min(angleOf(body) * outer, outer - shape.InnerRadius());
     };
-    const float ofA = ofConvex(pair.bodyA, *pair.shapeA);
-    if (pair.shapeB->IsConvex()) return ofA + ofConvex(pair.bodyB, *pair.shapeB);
+    const float ofA = ofConvex(pair.bodyA, shapes.a);
+    if (shapes.b.IsConvex()) return ofA + ofConvex(pair.bodyB, shapes.b);
     const float angle = angleOf(pair.bodyB);
     if (!(angle > 0)) return ofA;
     const Vector3 between = (stores.bodies.CenterOf(pair.bodyB) - stores.bodies.CenterOf(pair.bodyA)).cast<float>();
-    return ofA + angle * std::min(pair.shapeB->OuterRadius(), Length(between) + pair.shapeA->OuterRadius());
+    return ofA + angle * std::min(shapes.b.OuterRadius(), Length(between) + shapes.a.OuterRadius());
 }
 
 // m: contacts farther away than this are left to the Continuous stage.
-float MotionBeforeCast(const CollideStores& stores, const Pair& pair) {
+float MotionBeforeCast(const CollideStores& stores, const Pair& pair, PairShapes shapes) {
     float motion = std::numeric_limits<float>::infinity();
     if (stores.bodies.dynamics[pair.bodyA].continuous)
-        motion = FreeMotion(pair.shapeA->InnerRadius(), pair.shapeA->OuterRadius());
+        motion = FreeMotion(shapes.a.InnerRadius(), shapes.a.OuterRadius());
     if (stores.bodies.dynamics[pair.bodyB].continuous)
-        motion = std::min(motion, FreeMotion(pair.shapeB->InnerRadius(), pair.shapeB->OuterRadius()));
+        motion = std::min(motion, FreeMotion(shapes.b.InnerRadius(), shapes.b.OuterRadius()));
     return motion;
 }
 
 PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, Pair& pair, const RelativePose& bInA) {
-    PairView view{pair, bInA, bInA};
+    PairView view{pair, ShapesOf(colliders, pair), bInA, bInA};
     if (pair.offset)
         view.bInA =
             Inverse(LocalOf(bodies, colliders, pair.colliderA)) * bInA * LocalOf(bodies, colliders, pair.colliderB);
@@ -148,12 +148,12 @@ Twist<float> DisplacementOf(const CollideStores& stores, uint32_t body) {
 
 // Whether one of two bodies rotates so far in the step that it will collide again within it (Recollide.h). Beyond a
 // radian the points of the first substep would be far from the truth.
-bool WillCollideAgain(const CollideStores& stores, const Pair& pair) {
+bool WillCollideAgain(const CollideStores& stores, const Pair& pair, PairShapes shapes) {
     const auto will = [&](uint32_t body, const Shape& shape) {
         const float dt = stores.step.dt, square = LengthSquared(stores.bodies.AngularVelocityOf(body)) * dt * dt;
         return square * shape.OuterRadius() > 2 * kMostDeviation * shape.InnerRadius() && square < 1;
     };
-    return will(pair.bodyA, *pair.shapeA) || (!pair.fixedB && will(pair.bodyB, *pair.shapeB));
+    return will(pair.bodyA, shapes.a) || (!pair.fixedB && will(pair.bodyB, shapes.b));
 }
 
 // Clears the manifold.
@@ -196,7 +196,7 @@ PairView ViewPair(const BodyStore& bodies, const ColliderStore& colliders, PairS
 
 bool HardlyMoved(const PairView& v, const PairContact& contact) {
     const RelativePose& old = contact.reference;
-    const float size = std::min(v.pair.shapeA->OuterRadius(), v.pair.shapeB->OuterRadius());
+    const float size = std::min(v.shapes.a.OuterRadius(), v.shapes.b.OuterRadius());
     const float distance = std::min(kKeptDistance, kKeptFraction * size);
     if (LengthSquared(Vector3(v.bInA.position - old.position)) > distance * distance) return false;
     // For small angles |q - q0| is half the angle; the quaternion's sign does not flip between two steps.
@@ -205,7 +205,7 @@ bool HardlyMoved(const PairView& v, const PairContact& contact) {
     const Quaternion d{a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w};
     const float squared = 4 * LengthSquared(d);
     if (squared <= kKeptAngleOfRound * kKeptAngleOfRound) return true;
-    return squared <= kKeptAngle * kKeptAngle && !IsRound(*v.pair.shapeA) && !IsRound(*v.pair.shapeB);
+    return squared <= kKeptAngle * kKeptAngle && !IsRound(v.shapes.a) && !IsRound(v.shapes.b);
 }
 
 float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {
@@ -213,18 +213,18 @@ float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair) {
     return touches ? 2.0f : 1.0f;
 }
 
-PairReach::PairReach(const CollideStores& stores, const Pair& pair)
-    : speculative_(SpeculativeDistance(stores.step.settings, pair)),
+PairReach::PairReach(const CollideStores& stores, const Pair& pair, PairShapes shapes)
+    : speculative_(SpeculativeDistance(stores.step.settings, shapes)),
       closing_(FarEndFactor(stores.coloring, pair) * ClosingMotion(stores, pair)),
-      mostMotion_(stores.bodies.continuousCount > 0 ? MotionBeforeCast(stores, pair)
+      mostMotion_(stores.bodies.continuousCount > 0 ? MotionBeforeCast(stores, pair, shapes)
                                                     : std::numeric_limits<float>::infinity()) {}
 
-bool PairReach::AreFarApart(const CollideStores& stores, const Pair& pair) const {
-    return BallsApart(stores, pair, Of(closing_));
+bool PairReach::AreFarApart(const CollideStores& stores, const Pair& pair, PairShapes shapes) const {
+    return BallsApart(stores, pair, shapes, Of(closing_));
 }
 
-float PairReach::WithRotation(const CollideStores& stores, const Pair& pair) const {
-    return Of(closing_ + TurningMotion(stores, pair));
+float PairReach::WithRotation(const CollideStores& stores, const Pair& pair, PairShapes shapes) const {
+    return Of(closing_ + TurningMotion(stores, pair, shapes));
 }
 
 void FindManifold(const CollideStores& stores, const PairView& view, float reach, Manifold& manifold,
@@ -233,13 +233,13 @@ void FindManifold(const CollideStores& stores, const PairView& view, float reach
     CollideSettings settings;
     settings.method = stores.step.settings.narrowPhase;
     settings.speculativeDistance = reach;
-    if (pair.shapeB->Type() == ShapeType::Plane)
-        Collide(*pair.shapeA, static_cast<const Plane&>(*pair.shapeB), view.bInA, settings, pair.cache, manifold,
+    if (view.shapes.b.Type() == ShapeType::Plane)
+        Collide(view.shapes.a, static_cast<const Plane&>(view.shapes.b), view.bInA, settings, pair.cache, manifold,
                 findings.libccd);
     else
-        Collide(*pair.shapeA, static_cast<const ConvexShape&>(*pair.shapeB),
-                WithDistinctCenters(stores.bodies, stores.colliders, pair, view.bInA), settings, pair.cache, manifold,
-                findings.libccd);
+        Collide(view.shapes.a, static_cast<const ConvexShape&>(view.shapes.b),
+                WithDistinctCenters(stores.bodies, stores.colliders, pair, view.shapes, view.bInA), settings,
+                pair.cache, manifold, findings.libccd);
 }
 
 void WriteManifold(const CollideStores& stores, const PairView& v, const Manifold& manifold, PairContact& contact,
@@ -270,9 +270,9 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
     // Speeds at the start of the step do not tell which points of fast rotating bodies may touch.
-    const bool keepsAll = stores.elapsed > 0 || WillCollideAgain(stores, pair);
+    const bool keepsAll = stores.elapsed > 0 || WillCollideAgain(stores, pair, v.shapes);
     const float farEnd = FarEndFactor(stores.coloring, pair),
-                speculative = SpeculativeDistance(stores.step.settings, pair);
+                speculative = SpeculativeDistance(stores.step.settings, v.shapes);
     int count = 0;
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];

@@ -4,11 +4,13 @@
 
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/StepState.h>
+#include <Fulcrum/Physics/World/PairShapes.h>
 
 namespace fulcrum {
 
 struct PairView {
     Pair& pair;
+    PairShapes shapes;
     RelativePose bodyBInA;  // relative pose of the bodies' center frames
     RelativePose bInA;      // relative pose of the shapes' center frames
 };
@@ -42,11 +44,11 @@ float FarEndFactor(const ConstraintColoring& coloring, const Pair& pair);
 // motion.
 class PairReach {
 public:
-    PairReach(const CollideStores& stores, const Pair& pair);
+    PairReach(const CollideStores& stores, const Pair& pair, PairShapes shapes);
     // Whether the bounding spheres of the two bodies are farther apart.
-    bool AreFarApart(const CollideStores& stores, const Pair& pair) const;
+    bool AreFarApart(const CollideStores& stores, const Pair& pair, PairShapes shapes) const;
     // m
-    float WithRotation(const CollideStores& stores, const Pair& pair) const;
+    float WithRotation(const CollideStores& stores, const Pair& pair, PairShapes shapes) const;
 
 private:
     float Of(float motion) const { return speculative_ + std::min(motion, mostMotion_); }

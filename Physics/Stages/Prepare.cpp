@@ -50,14 +50,14 @@ template <int N, bool kFixedB>
 // For bodies created inside each other: limits the recovery speed and disables the warm start, because their velocities
 // are clamped to that speed.
 template <int N, bool kFixedB>
-[[gnu::cold]] void LimitPushes(const BodyStore& bodies, float mostSpeed, ContactBatch<N, kFixedB>& batch) {
+[[gnu::cold]] void LimitPushes(const BodyStore& bodies, ContactBatch<N, kFixedB>& batch) {
     for (int lane = 0; lane < N; ++lane) {
         const auto isCrowded = [&](uint32_t body) {
             const BodyDynamics& d = bodies.dynamics[body];
             return d.crowded && !d.dispersing;
         };
         if (!isCrowded(batch.bodyA[lane]) && !isCrowded(batch.bodyB[lane])) continue;
-        batch.maxPushSpeed.Set(lane, std::min(batch.maxPushSpeed[lane], mostSpeed));
+        batch.gentle = static_cast<uint16_t>(batch.gentle | 1u << lane);
         batch.inverseSoftDepth.Set(lane, 0.0f);  // at any depth
     }
 }
@@ -67,9 +67,8 @@ struct ContactSource {
     const BodyStore& bodies;
     PairStore& pairs;
     ContactPrepareSettings settings;
-    bool hasCrowds;            // some bodies are crowded
-    float depenetrationSpeed;  // m/s, their largest recovery speed
-    ContactNote* notes;        // null without contact events
+    bool hasCrowds;      // some bodies are crowded
+    ContactNote* notes;  // null without contact events
 };
 
 template <int N, bool kFixedB>
@@ -78,7 +77,7 @@ void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, WorkerFind
         PrepareContacts<N, kFixedB>(batch, from.pairs.records.data(), from.bodies.ForSolver(), from.settings);
     if (unusable != 0) ForgetContacts(from.pairs, batch, unusable);
     if (from.hasCrowds) [[unlikely]]
-        LimitPushes(from.bodies, from.depenetrationSpeed, batch);
+        LimitPushes(from.bodies, batch);
     NoteDeepest(from.pairs, batch, findings);
     batch.hasNotes = false;
     if (!from.notes) return;
@@ -136,12 +135,10 @@ public:
                     pairs,
                     {.impulseScale = step.contactImpulseScale * effort.impulseScale,
                      .restitutionSpeed = step.settings.restitutionSpeed,
-                     .maxPushSpeed = step.settings.contactPushSpeed,
                      .dt = step.dt,
                      .massOverrides = pairs.massOverrides.data(),
                      .surfaceVelocities = pairs.surfaceVelocities.data()},
                     !crowd.crowded.empty(),
-                    step.settings.depenetrationSpeed,
                     layout.notes.empty() ? nullptr : layout.notes.data()},
           joints_(joints),
           jointSettings_(effort.joints),

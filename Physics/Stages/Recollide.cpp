@@ -32,7 +32,7 @@ bool RotateTooFast(const CollideStores& stores, const Pair& pair, float h) {
 bool HasManyManifolds(const PairStore& pairs, uint32_t index) {
     constexpr int kMany = 8;
     int count = 0;
-    for (; index != PairStore::kNone; index = pairs.pairs[index].more) ++count;
+    for (; index != PairStore::kNone; index = pairs.MoreOf(index)) ++count;
     return count > kMany;
 }
 
@@ -55,7 +55,7 @@ void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, 
     const PairView view = ViewPair(stores, index);
     // For the motion of a whole step, as at its start: with less, contacts of edges would lose the points of their
     // faces.
-    const float reach = PairReach(stores, pair).WithRotation(stores, pair);
+    const float reach = PairReach(stores, pair, view.shapes).WithRotation(stores, pair, view.shapes);
     if (!pair.surface) {
         Manifold manifold;
         FindManifold(stores, view, reach, manifold, findings);
@@ -69,7 +69,7 @@ void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, 
     WriteSurfaceManifolds(stores, view, index, false, findings);
     for (const uint32_t place : findings.surfacePlaces)
         if (place != PairStore::kNone && IsSolved(pairs.pairs[place])) MarkApart(pairs, pairs.pairs[place]);
-    for (uint32_t i = index; i != PairStore::kNone; i = pairs.pairs[i].more) {
+    for (uint32_t i = index; i != PairStore::kNone; i = pairs.MoreOf(i)) {
         const Pair& slot = pairs.pairs[i];
         pairs.contacts[slot.contact].reference = view.bInA;
         if (!pairs.RecordOf(slot).Has(ContactRecord::kApart)) MarkFound(pairs, slot);

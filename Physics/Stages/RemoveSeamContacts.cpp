@@ -73,7 +73,7 @@ private:
         const PairView view = View(index);
         const RelativePose pose = view.bodyBInA * LocalOf(bodies_, colliders_, view.pair.colliderB);
         const Vector3 upInB = InverseRotate(pose.rotation, up);
-        const Shape& shape = *view.pair.shapeB;
+        const Shape& shape = view.shapes.b;
         float height = std::numeric_limits<float>::infinity();
         if (view.pair.surface) {
             const TriangleView triangle =
@@ -101,7 +101,7 @@ private:
         const Pair& first = pairs_.pairs[bearing.pair];
         const Pair& second = pairs_.pairs[other.pair];
         if (first.colliderA != second.colliderA || first.colliderB == second.colliderB) return false;
-        const float flush = std::min(kFlush, kFlushFraction * first.shapeA->OuterRadius());
+        const float flush = std::min(kFlush, kFlushFraction * ShapesOf(colliders_, first).a.OuterRadius());
         return bearing.separation < flush && Dot(bearing.normal, other.normal) < kSameDirection &&
                HeightOf(other.pair, bearing.deepest, Vector3(-bearing.normal)) < flush;
     }

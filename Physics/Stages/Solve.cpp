@@ -56,9 +56,7 @@ struct Phase {
 };
 
 // Prefetches the next batch while this one is solved.
-FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) {
-    PrefetchLines(&batch, sizeof batch);
-}
+FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) { PrefetchLines(&batch, sizeof batch); }
 template <class Batch>
 FULCRUM_FORCE_INLINE void Prefetch(const Batch&) {}
 
@@ -90,7 +88,8 @@ public:
           pseudo_(pseudo),
           pushes_(pushes),
           notes_(layout.notes.empty() ? nullptr : layout.notes.data()),
-          rare_{stores.pairs.records.data(), moved.store.poses.data(), stores.pairs.surfaceVelocities.data()},
+          rare_{stores.pairs.records.data(), moved.store.poses.data(), stores.pairs.surfaceVelocities.data(),
+                std::min(moved.settings.contactPushSpeed, moved.settings.depenetrationSpeed)},
           h_(effort.substepDt) {}
 
     // A large group: all workers, phase by phase.
@@ -285,7 +284,6 @@ private:
                 RefillContacts(StoresAt(substep),
                                {.impulseScale = 1,
                                 .restitutionSpeed = effort_.contacts.restitutionSpeed,
-                                .maxPushSpeed = stores_.step.settings.contactPushSpeed,
                                 .dt = stores_.step.dt,
                                 .massOverrides = stores_.pairs.massOverrides.data(),
                                 .surfaceVelocities = stores_.pairs.surfaceVelocities.data()},
@@ -368,7 +366,7 @@ private:
     const Effort& effort_;
     BodyState* pseudo_;
     std::span<PushNote> pushes_;
-    ContactNote* notes_;                 // by record; null without contact events
+    ContactNote* notes_;  // by record; null without contact events
     RareContactData rare_;
     float h_;                            // s, of a substep
     std::atomic<int> lastOutdated_ = 0;  // the substep, from 1, after which some contact was outdated last

@@ -1,6 +1,6 @@
 // The colored constraints as the solver runs them: groups of islands, in each group color after color, in each color
-// batches of lanes, joints before contacts. Written by the BuildIslands stage where constraints began or ended, with the
-// constraints and bodies of the batches; their rows are filled by Prepare.
+// batches of lanes, joints before contacts. Written by the BuildIslands stage where constraints began or ended, with
+// the constraints and bodies of the batches; their rows are filled by Prepare.
 #pragma once
 
 #include <Fulcrum/Constraints/Coloring.h>

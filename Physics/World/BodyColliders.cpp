@@ -73,7 +73,7 @@ void ForgetManifoldsOf(WorldState& world, uint32_t collider) {
 void ShiftContacts(WorldState& world, uint32_t body, const Vector3& by) {
     VisitColliders(world, body, [&](uint32_t collider) {
         world.pairs.VisitOf(collider, [&](uint32_t first) {
-            for (uint32_t index = first; index != PairStore::kNone; index = world.pairs.pairs[index].more) {
+            for (uint32_t index = first; index != PairStore::kNone; index = world.pairs.MoreOf(index)) {
                 const Pair& pair = world.pairs.pairs[index];
                 if (pair.contact == PairStore::kNone) continue;
                 const bool isA = pair.bodyA == body;

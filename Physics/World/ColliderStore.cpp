@@ -12,6 +12,8 @@ uint32_t ColliderStore::Allocate(uint32_t count) {
         return first;
     }
     const uint32_t first = static_cast<uint32_t>(colliders.size());
+    ReserveAtLeast(colliders, colliders.size() + count);
+    ReserveAtLeast(shapes, colliders.size() + count);
     colliders.resize(colliders.size() + count);
     shapes.resize(colliders.size());
     return first;

@@ -24,7 +24,7 @@ void UncolorPair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index)
 
 void RemovePair(PairStore& pairs, ConstraintColoring& coloring, uint32_t index) {
     while (index != PairStore::kNone) {
-        const uint32_t next = pairs.pairs[index].more;
+        const uint32_t next = pairs.MoreOf(index);
         UncolorPair(pairs, coloring, index);
         pairs.Remove(index);
         index = next;

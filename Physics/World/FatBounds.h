@@ -1,6 +1,7 @@
 // Bounds of colliders: tight bounds at the current pose, and fat bounds for the trees.
 #pragma once
 
+#include <Fulcrum/Physics/World/PairShapes.h>
 #include <Fulcrum/Physics/World/WorldState.h>
 
 #include <algorithm>
@@ -35,8 +36,8 @@ inline float BoundsMargin(const SystemSettings& settings, const Shape& shape) {
     return std::min(settings.boundsMargin, kMarginFraction * shape.OuterRadius());
 }
 // For a pair: that of the smaller shape.
-inline float SpeculativeDistance(const SystemSettings& settings, const Pair& pair) {
-    return std::min(SpeculativeDistance(settings, *pair.shapeA), SpeculativeDistance(settings, *pair.shapeB));
+inline float SpeculativeDistance(const SystemSettings& settings, PairShapes shapes) {
+    return std::min(SpeculativeDistance(settings, shapes.a), SpeculativeDistance(settings, shapes.b));
 }
 
 }  // namespace fulcrum

@@ -76,9 +76,8 @@ void ChangeListener(WorldState& world, const ContactListener* listener) {
     for (uint32_t i = 0; i < world.pairs.contacts.size(); ++i) {
         const uint32_t pair = world.pairs.contacts[i].pair;
         if (pair == PairStore::kNone) continue;
-        CombineMaterials(world.bodies, world.pairs, pair);
-        for (const auto mark :
-             {ContactRecord::kSurfaceVelocity, ContactRecord::kMassOverride, ContactRecord::kSensed})
+        CombineMaterials(world.bodies, world.colliders, world.pairs, pair);
+        for (const auto mark : {ContactRecord::kSurfaceVelocity, ContactRecord::kMassOverride, ContactRecord::kSensed})
             world.pairs.records[i].Set(mark, false);
     }
     for (uint32_t body : world.bodies.awake) RequeueColliders(world.bodies, world.colliders, body);

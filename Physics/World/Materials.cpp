@@ -38,10 +38,11 @@ PairMaterial MaterialOfPair(const BodyStore& bodies, uint32_t bodyA, uint32_t bo
             Combine(std::max(a.restitutionRule, b.restitutionRule), a.restitution, restitution)};
 }
 
-void CombineMaterials(const BodyStore& bodies, PairStore& pairs, uint32_t index) {
+void CombineMaterials(const BodyStore& bodies, const ColliderStore& colliders, PairStore& pairs, uint32_t index) {
     const Pair& pair = pairs.pairs[index];
     if (pair.contact == PairStore::kNone) return;
-    const PairMaterial material = MaterialOfPair(bodies, pair.bodyA, pair.bodyB, *pair.shapeB, pair.material);
+    const PairMaterial material =
+        MaterialOfPair(bodies, pair.bodyA, pair.bodyB, *colliders.shapes[pair.colliderB].shape, pair.material);
     ContactRecord& record = pairs.RecordOf(pair);
     record.friction = material.friction;
     record.restitution = material.restitution;

@@ -2,22 +2,12 @@
 
 #include <Fulcrum/Math/Assert.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 
 #include <algorithm>
 #include <utility>
 
 namespace fulcrum {
-
-namespace {
-
-// Grows by an eighth: doubling the largest arrays of a world would leave up to half unused.
-template <class T>
-void ReserveAtLeast(Array<T>& elements, size_t count) {
-    const size_t size = elements.size();
-    if (count > elements.capacity()) elements.reserve(std::max(count, size + size / 8 + 64));
-}
-
-}  // namespace
 
 uint32_t PairStore::HashOf(uint64_t key) {
     key ^= key >> 32;
@@ -28,29 +18,20 @@ uint32_t PairStore::HashOf(uint64_t key) {
 uint32_t PairStore::Find(uint32_t colliderA, uint32_t colliderB) const {
     if (table_.empty()) return kNone;
     const uint64_t key = Key(colliderA, colliderB);
-    const uint32_t hash = HashOf(key), mask = static_cast<uint32_t>(table_.size() - 1);
-    for (uint32_t i = hash & mask;; i = (i + 1) & mask) {
-        const Entry& entry = table_[i];
-        if (entry.index == kNone) return kNone;
-        if (entry.hash == hash && Key(pairs[entry.index].colliderA, pairs[entry.index].colliderB) == key)
-            return entry.index;
-    }
+    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
+    for (uint32_t i = HashOf(key) & mask;; i = (i + 1) & mask)
+        if (table_[i] == kNone || KeyOf(table_[i]) == key) return table_[i];
 }
 
 void PairStore::Grow() {
-    Array<Entry> old(table_.empty() ? 1024 : 2 * table_.size());
+    Array<uint32_t> old(table_.empty() ? 1024 : 2 * table_.size(), kNone);
     old.swap(table_);
-    const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    for (const Entry& entry : old) {
-        if (entry.index == kNone) continue;
-        uint32_t i = entry.hash & mask;
-        while (table_[i].index != kNone) i = (i + 1) & mask;
-        table_[i] = entry;
-    }
+    for (const uint32_t index : old)
+        if (index != kNone) AddKey(KeyOf(index), index);
 }
 
 void PairStore::Reserve(size_t more) {
-    const size_t count = pairs.size() + more - std::min(more, free_.size());
+    const size_t count = pairs.size() + more - std::min(more, size_t{freeCount_});
     ReserveAtLeast(pairs, count);
     ReserveAtLeast(links_, count);
     ReserveAtLeast(loads, count);
@@ -58,9 +39,10 @@ void PairStore::Reserve(size_t more) {
 
 uint32_t PairStore::Allocate() {
     uint32_t index;
-    if (!free_.empty()) {
-        index = free_.back();
-        free_.pop_back();
+    if (lastFree_ != kNone) {
+        index = std::exchange(lastFree_, pairs[lastFree_].colliderA);
+        (lastFree_ == kNone ? firstFree_ : pairs[lastFree_].colliderB) = kNone;
+        --freeCount_;
     } else {
         index = static_cast<uint32_t>(pairs.size());
         ReserveAtLeast(pairs, pairs.size() + 1);
@@ -71,7 +53,6 @@ uint32_t PairStore::Allocate() {
         loads.emplace_back();
         if (keepsReported_) reported.emplace_back();
         active.Reserve(index + 1);
-        free_.reserve(pairs.capacity());  // so that Remove never allocates
     }
     pairs[index] = {};
     loads[index] = {};
@@ -80,18 +61,26 @@ uint32_t PairStore::Allocate() {
     return index;
 }
 
+void PairStore::Free(uint32_t index) {
+    pairs[index].exists = false;
+    pairs[index].colliderA = lastFree_;
+    pairs[index].colliderB = kNone;
+    (lastFree_ == kNone ? firstFree_ : pairs[lastFree_].colliderB) = index;
+    lastFree_ = index;
+    ++freeCount_;
+}
+
 void PairStore::ReserveContacts(size_t more) {
-    const size_t count = contacts.size() + more - std::min(more, freeContacts_.size());
+    const size_t count = contacts.size() + more - std::min(more, size_t{freeContacts_});
     ReserveAtLeast(contacts, count);
     ReserveAtLeast(records, count);
-    freeContacts_.reserve(contacts.capacity());  // so that RemoveContact never allocates
 }
 
 uint32_t PairStore::AddContact(uint32_t pair) {
     uint32_t index;
-    if (!freeContacts_.empty()) {
-        index = freeContacts_.back();
-        freeContacts_.pop_back();
+    if (freeContact_ != kNone) {
+        index = std::exchange(freeContact_, contacts[freeContact_].triangle);
+        --freeContacts_;
         contacts[index] = {};
         records[index] = {};
         if (keepsListenersData_) surfaceVelocities[index] = {};
@@ -115,7 +104,8 @@ void PairStore::RemoveContact(uint32_t pair) {
     if (index == kNone) return;
     FULCRUM_ASSERT(contacts[index].color.color == ColorSlot{}.color);
     contacts[index].pair = kNone;
-    freeContacts_.push_back(index);
+    contacts[index].triangle = std::exchange(freeContact_, index);
+    ++freeContacts_;
 }
 
 void PairStore::KeepListenersData(bool keep) {
@@ -140,15 +130,13 @@ uint32_t PairStore::AddMore(uint32_t of) {
     pair.bodyB = first.bodyB;
     pair.colliderA = first.colliderA;
     pair.colliderB = first.colliderB;
-    pair.shapeA = first.shapeA;
-    pair.shapeB = first.shapeB;
     pair.fixedB = first.fixedB;
     pair.offset = first.offset;
     pair.surface = first.surface;
     contacts[pair.contact].reference = contacts[first.contact].reference;
     pair.isMore = true;
-    pair.more = first.more;
-    pairs[of].more = index;
+    contacts[pair.contact].more = contacts[first.contact].more;
+    contacts[first.contact].more = index;
     return index;
 }
 
@@ -166,24 +154,23 @@ uint32_t PairStore::Add(uint32_t colliderA, uint32_t colliderB) {
 
 void PairStore::AddKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
-    const uint32_t hash = HashOf(key);
-    uint32_t i = hash & mask;
-    while (table_[i].index != kNone) i = (i + 1) & mask;
-    table_[i] = {hash, index};
+    uint32_t i = HashOf(key) & mask;
+    while (table_[i] != kNone) i = (i + 1) & mask;
+    table_[i] = index;
 }
 
 void PairStore::RemoveKey(uint64_t key, uint32_t index) {
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     uint32_t hole = HashOf(key) & mask;
-    while (table_[hole].index != index) hole = (hole + 1) & mask;
+    while (table_[hole] != index) hole = (hole + 1) & mask;
     // Backward-shift deletion: entries after the hole move up unless that would put them before their home slot.
-    for (uint32_t i = (hole + 1) & mask; table_[i].index != kNone; i = (i + 1) & mask) {
-        if (((i - table_[i].hash) & mask) >= ((i - hole) & mask)) {
+    for (uint32_t i = (hole + 1) & mask; table_[i] != kNone; i = (i + 1) & mask) {
+        if (((i - HashOf(KeyOf(table_[i]))) & mask) >= ((i - hole) & mask)) {
             table_[hole] = table_[i];
             hole = i;
         }
     }
-    table_[hole].index = kNone;
+    table_[hole] = kNone;
 }
 
 void PairStore::Link(uint32_t index) {
@@ -212,23 +199,20 @@ void PairStore::Remove(uint32_t index) {
     active.Erase(index);
     RemoveContact(index);
     if (keepsReported_ && reported[index].isOn) ended.push_back(reported[index]);
-    if (pairs[index].isMore) {
-        pairs[index].exists = false;
-        free_.push_back(index);
-        return;
-    }
+    if (pairs[index].isMore) return Free(index);
     Unlink(index);
-    RemoveKey(Key(pairs[index].colliderA, pairs[index].colliderB), index);
-    pairs[index].exists = false;
-    free_.push_back(index);
+    RemoveKey(KeyOf(index), index);
+    Free(index);
     --size_;
 }
 
 size_t HeapBytes(const PairStore& store) {
-    const auto& [pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion, active, table, free,
-                 freeContacts, links, heads, size, keepsListenersData, keepsReported] = store;
-    return HeapBytes(pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion, active, table, free,
-                     freeContacts, links, heads, size, keepsListenersData, keepsReported);
+    const auto& [pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion,
+                 active, table, firstFree, lastFree, freeCount, freeContact, freeContacts, links, heads, size,
+                 keepsListenersData, keepsReported] = store;
+    return HeapBytes(pairs, contacts, records, massOverrides, surfaceVelocities, reported, ended, loads, loadVersion,
+                     active, table, firstFree, lastFree, freeCount, freeContact, freeContacts, links, heads, size,
+                     keepsListenersData, keepsReported);
 }
 
 }  // namespace fulcrum

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Fulcrum/Collision/NarrowPhase/Manifold.h>
-#include <Fulcrum/Collision/Shapes/Shape.h>
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactRecord.h>
 #include <Fulcrum/Constraints/MassOverride.h>
@@ -17,14 +16,11 @@
 
 namespace fulcrum {
 
-struct alignas(64) Pair {
-    uint32_t bodyA = 0, bodyB = 0;  // A is dynamic, B any
-    uint32_t colliderA = 0, colliderB = 0;
-    const ConvexShape* shapeA = nullptr;
-    const Shape* shapeB = nullptr;  // convex, a plane or a surface
+struct Pair {
+    uint32_t bodyA = 0, bodyB = 0;          // A is dynamic, B any
+    uint32_t colliderA = 0, colliderB = 0;  // their shapes: see PairShapes.h
     PairCache cache;
     uint32_t contact = ~0u;  // index of its contact; kNone if it has none: no points, and B is no surface
-    uint32_t more = ~0u;     // for surfaces: index of the next manifold of these two colliders
     uint8_t pointCount = 0;  // of the manifold; also of the record, unless onSeam
     bool exists : 1 = false;
     bool fixedB : 1 = false;    // B's body is immovable: static or kinematic
@@ -35,15 +31,16 @@ struct alignas(64) Pair {
     bool isMore = false;        // for surfaces: an additional manifold of another pair
     uint8_t material = 0;       // for surfaces: index into the palette
 };
-static_assert(sizeof(Pair) == 64);
+static_assert(sizeof(Pair) == 44);
 
 // What a pair has besides its record while it has points; always if B is a surface.
 struct alignas(64) PairContact {
     RelativePose reference;  // pose of shape B in shape A when the manifold was found
     uint32_t features[Manifold::kMaxPoints] = {0, 0, 0, 0};
     ColorSlot color;
-    uint32_t triangle = 0;  // for surfaces: the triangle of the deepest point
+    uint32_t triangle = 0;  // for surfaces: the triangle of the deepest point; if unused, the next unused contact
     uint32_t pair = ~0u;    // its index; kNone if unused
+    uint32_t more = ~0u;    // for surfaces: index of the next manifold of these two colliders, a pair
 };
 static_assert(sizeof(PairContact) == 64);
 
@@ -80,11 +77,16 @@ public:
     uint32_t Find(uint32_t colliderA, uint32_t colliderB) const;
     uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // must not exist yet
     // So many pairs can be added without moving the others.
-    bool HasRoomFor(size_t more) const { return more <= free_.size() + (pairs.capacity() - pairs.size()); }
+    bool HasRoomFor(size_t more) const { return more <= freeCount_ + (pairs.capacity() - pairs.size()); }
     void Reserve(size_t more);
     // Adds a manifold to the pair `of`, between the same shapes and bodies, with a contact. Not found by Find, and not
     // active.
     uint32_t AddMore(uint32_t of);
+    // For surfaces: the next manifold of the same two colliders, or kNone.
+    uint32_t MoreOf(uint32_t pair) const {
+        const Pair& p = pairs[pair];
+        return p.surface && p.contact != kNone ? contacts[p.contact].more : kNone;
+    }
     // Gives a pair without a contact one, and a record, without material; returns its index.
     uint32_t AddContact(uint32_t pair);
     // So many can be added without moving the others.
@@ -111,6 +113,7 @@ public:
 private:
     friend struct SnapshotAccess;
     static uint64_t Key(uint32_t a, uint32_t b) { return a < b ? (uint64_t(a) << 32 | b) : (uint64_t(b) << 32 | a); }
+    uint64_t KeyOf(uint32_t index) const { return Key(pairs[index].colliderA, pairs[index].colliderB); }
     // Linked lists of the pairs of each collider, so that removing a collider need not scan all pairs.
     struct Links {
         uint32_t next[2] = {kNone, kNone}, previous[2] = {kNone, kNone};  // in the lists of colliders A and B
@@ -123,22 +126,21 @@ private:
     void Unlink(uint32_t index);
 
     uint32_t Allocate();
+    void Free(uint32_t index);
     static uint32_t HashOf(uint64_t key);
     void Grow();
     void AddKey(uint64_t key, uint32_t index);     // inserts into the table, which must have space
     void RemoveKey(uint64_t key, uint32_t index);  // removes from the table, which must contain it
 
-    // Open addressing with linear probing; at most half full. Its order does not influence results. Keys are those of
-    // the pairs.
-    struct Entry {
-        uint32_t hash;
-        uint32_t index = kNone;
-    };
-    Array<Entry> table_;
-    Array<uint32_t> free_;
-    Array<uint32_t> freeContacts_;
-    Array<Links> links_;     // by pair
-    Array<uint32_t> heads_;  // by collider
+    // Open addressing with linear probing, at most half full: indices of pairs, or kNone. Its order does not influence
+    // results. Keys are those of the pairs.
+    Array<uint32_t> table_;
+    // Indices of removed pairs, of which the last is used first: colliderA of each is the one before it, colliderB the
+    // one after it.
+    uint32_t firstFree_ = kNone, lastFree_ = kNone, freeCount_ = 0;
+    uint32_t freeContact_ = kNone, freeContacts_ = 0;  // the first unused contact, and their number
+    Array<Links> links_;                               // by pair
+    Array<uint32_t> heads_;                            // by collider
     uint32_t size_ = 0;
     bool keepsListenersData_ = false, keepsReported_ = false;
 };

@@ -14,7 +14,7 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f, 3.0f};
+constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f};
 // Hard rows: nothing is pushed. Friction is solved in each pass.
 constexpr ContactSolveSettings kSolve{
     .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 1, .impulseScale = 0, .slop = 0, .relaxes = false};
@@ -283,9 +283,12 @@ TEST(ContactBatch, LeavesNoApproachBehind) {
         for (float& impulse : record.frictionImpulse) impulse = 0;
         record.twistImpulse = 0;
     }
+    const RareContactData rare = contacts.Rare();
+    ContactSolveSettings settings = kSolve;
+    settings.rare = &rare;
     for (uint32_t i = 0; i < 64; ++i) {
         auto batch = PrepareBatch<1, false>(contacts, i, kPrepare);
-        SolveContactVelocities(batch, contacts.states.data(), kSolve);
+        SolveContactVelocities(batch, contacts.states.data(), settings);
         const Twist<float> a = contacts.VelocityOf(2 * i), b = contacts.VelocityOf(2 * i + 1);
         const auto vec = [](const Vec3<Wide<1>>& v) { return Lane<1>(v, 0); };
         const Vector3 relative = b.linear + Cross<float>(b.angular, vec(batch.sideB.arm)) - a.linear -
@@ -299,11 +302,14 @@ TEST(ContactBatch, LeavesNoApproachBehind) {
 TEST(ContactBatch, AFixedSideIsNeitherReadAsMovableNorWritten) {
     RandomContacts contacts(16, true, 4);
     const std::vector<BodyState> before = contacts.states;
+    const RareContactData rare = contacts.Rare();
+    ContactSolveSettings settings = kSolve;
+    settings.rare = &rare;
     for (uint32_t i = 0; i < 16; ++i) {
         auto batch = PrepareBatch<1, true>(contacts, i, kPrepare);
         WarmStartContacts(batch, contacts.states.data());
-        SolveContactVelocities(batch, contacts.states.data(), kSolve);
-        RelaxContacts(batch, contacts.states.data(), kSolve);
+        SolveContactVelocities(batch, contacts.states.data(), settings);
+        RelaxContacts(batch, contacts.states.data(), settings);
         EXPECT_EQ(std::memcmp(&contacts.states[2 * i + 1], &before[2 * i + 1], sizeof(BodyState)), 0);
     }
 }

@@ -34,7 +34,7 @@ NotedContacts Solved(uint32_t seed, bool surfacesMove) {
     if (surfacesMove) MoveSurfaces(contacts, seed);
     BodyState* states = contacts.states.data();
     for (uint32_t first = 0; first < kContacts; first += N) {
-        auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f, 3.0f});
+        auto batch = PrepareBatch<N, kFixedB>(contacts, first, {0.9f, 0.5f});
         ContactSolveSettings settings{
             .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 0, .impulseScale = 0, .slop = 0.0005f};
         settings.restitutionSpeed = 0.5f;

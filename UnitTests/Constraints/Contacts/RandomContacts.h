@@ -113,8 +113,7 @@ private:
 
 // Fills a batch with the contacts first .. first + N - 1; lanes beyond the last repeat it.
 template <int N, bool kFixedB>
-ContactBatch<N, kFixedB> PrepareBatch(RandomContacts& contacts, uint32_t first,
-                                      ContactPrepareSettings settings) {
+ContactBatch<N, kFixedB> PrepareBatch(RandomContacts& contacts, uint32_t first, ContactPrepareSettings settings) {
     ContactBatch<N, kFixedB> batch;
     const uint32_t left = static_cast<uint32_t>(contacts.records.size()) - first;
     batch.count = static_cast<int32_t>(left < N ? left : N);
