@@ -61,6 +61,8 @@ struct ContactBatch {
     bool hasNotes = false;  // some lane reports contact events: see ContactNote
     // Lanes whose bodies moved so far relative to each other that they should collide again.
     uint16_t rotated = 0, slid = 0;
+    // Lanes with a velocity error above ContactSolveSettings::mostError before the last velocity iteration.
+    uint16_t unsolved = 0;
     const ContactRecord*
         surfaces;  // the records, if second bodies are dynamic and some lane has a surface velocity; else null
 
@@ -122,6 +124,8 @@ struct ContactSolveSettings {
     float mostStiffer = 0;  // 0..1: largest reduction
     float slop;             // m: allowed overlap, not corrected
     bool relaxes = true;    // relax iterations follow; friction is then solved in those only
+    // 1/s: the largest velocity error of a normal row, times inverseSoftDepth, with which a contact counts as solved.
+    float mostError = std::numeric_limits<float>::infinity();
     // Restitution, see BounceContacts:
     float restitutionSpeed = 0;      // m/s: restitution threshold, slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without the impulses that the next
@@ -149,6 +153,12 @@ void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states);
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+
+// The same iteration for one lane, with successive over-relaxation of its normal rows; relax: RelaxContacts. Returns
+// whether its velocity error was above ContactSolveSettings::mostError before.
+template <int N, bool kFixedB>
+bool IterateContact(ContactBatch<N, kFixedB>& batch, int lane, float overRelaxation, BodyState* states,
+                    const ContactSolveSettings& settings, bool relax);
 
 // Updates the separations from the displacements and solves the velocities again without penetration recovery: bodies
 // keep the corrected positions but not the recovery velocity.

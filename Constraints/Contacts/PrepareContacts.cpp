@@ -214,7 +214,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.tangent2 = t2;
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
-    batch.rotated = batch.slid = 0;
+    batch.rotated = batch.slid = batch.unsolved = 0;
     batch.collisions = Real(1.0f);
     batch.maxPushSpeed = Real(settings.maxPushSpeed);
     batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, bodyB, bodies.poses);
