@@ -61,9 +61,10 @@ inline uint8_t StiffnessOf(int substeps, int systemSubsteps, float longer) {
     return stiffness;
 }
 
-// ContactSolveSettings::mostError for a step of dt seconds, in which such an error deepens an overlap by a fortieth of
-// the smaller inner radius. inverseSoftDepth is in quarters of it.
-inline float MostVelocityError(float dt) { return 0.1f / dt; }
+// ContactSolveSettings::mostError for steps of dt seconds: 0.3 inner radii of the smaller body per second; in steps
+// longer than 1/60 s an error that deepens an overlap by as much in a step. inverseSoftDepth is in quarters of the
+// radius.
+inline float MostVelocityError(float dt) { return 0.02f / std::max(dt, 1.0f / 60); }
 
 // Loads and stiffness change over so many steps of 1/60 s, or longer steps, or over the same time in shorter ones: a
 // load that bounces on its springs would be pumped by springs that stiffen while it rises.
