@@ -63,6 +63,8 @@ struct ContactBatch {
     uint16_t gentle = 0;    // lanes whose penetration recovery is limited to RareContactData::gentlePushSpeed
     // Lanes whose bodies moved so far relative to each other that they should collide again.
     uint16_t rotated = 0, slid = 0;
+    // Lanes with a velocity error above ContactSolveSettings::mostError before the last velocity iteration.
+    uint16_t unsolved = 0;
     // How often the bodies collided in this step: they collide again after as many times the relative motion for which
     // one manifold is valid (UpdateSeparations).
     uint8_t collisions[N];
@@ -125,6 +127,8 @@ struct ContactSolveSettings {
     float mostStiffer = 0;  // 0..1: largest reduction
     float slop;             // m: allowed overlap, not corrected
     bool relaxes = true;    // relax iterations follow; friction is then solved in those only
+    // 1/s: the largest velocity error of a normal row, times inverseSoftDepth, with which a contact counts as solved.
+    float mostError = std::numeric_limits<float>::infinity();
     // Restitution, see BounceContacts:
     float restitutionSpeed = 0;      // m/s: restitution threshold, slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without the impulses that the next
@@ -152,6 +156,12 @@ void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states);
 
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+
+// The same iteration for one lane, with successive over-relaxation of its normal rows; relax: RelaxContacts. Returns
+// whether its velocity error was above ContactSolveSettings::mostError before.
+template <int N, bool kFixedB>
+bool IterateContact(ContactBatch<N, kFixedB>& batch, int lane, float overRelaxation, BodyState* states,
+                    const ContactSolveSettings& settings, bool relax);
 
 // Updates the separations from the displacements and solves the velocities again without penetration recovery: bodies
 // keep the corrected positions but not the recovery velocity.

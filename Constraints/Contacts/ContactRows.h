@@ -148,6 +148,8 @@ template <Pass kPass, bool kRare, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                     const ContactSolveSettings& settings) {
     using Real = Wide<N>;
+    // Relax iterations of whole batches do not need them.
+    constexpr bool kFindsErrors = kPass != Pass::Relax || N == 1;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Velocity>(batch, states, twists);
@@ -237,11 +239,17 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     }
     SweepNormals<kPass>(batch, settings, stiffer, speed, total);
     NormalImpulses<Real> changes;
+    [[maybe_unused]] WideMask<N> isUnsolved = zero > zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
-        changes.Add(row, total[i] - row.impulse);
+        const Real change = total[i] - row.impulse;
+        changes.Add(row, change);
         row.impulse = total[i];
+        if constexpr (kFindsErrors)
+            isUnsolved =
+                isUnsolved | (Abs(change) * batch.inverseSoftDepth > row.inverseResponse * Real(settings.mostError));
     }
+    if constexpr (kFindsErrors) batch.unsolved = static_cast<uint16_t>(isUnsolved.ToBits() & LanesOf(batch));
 
     Vec3<Real> force = batch.normal * changes.sum, torque = NormalTorque(batch, changes.sumA, changes.sumB);
     if constexpr (kPass != Pass::Push)

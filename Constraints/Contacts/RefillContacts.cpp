@@ -1,39 +1,12 @@
-#include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+#include <Fulcrum/Constraints/Contacts/ContactLanes.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <cstring>
 
 namespace fulcrum {
 
 namespace {
 
 using namespace contacts;
-
-// The members from the first vector up to those that do not depend on the manifold are arrays of lanes without gaps, in
-// batches of any width.
-template <int N, bool kFixedB>
-struct LaneRegion {
-    using Batch = ContactBatch<N, kFixedB>;
-    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, inverseSoftDepth);
-    static constexpr size_t kCount = (kEnd - kBegin) / (N * sizeof(float));
-    static_assert(kBegin + kCount * N * sizeof(float) == kEnd);
-};
-
-template <int N, bool kFixedB>
-std::byte* LaneAt(ContactBatch<N, kFixedB>& batch, size_t begin, size_t i, int lane) {
-    return reinterpret_cast<std::byte*>(&batch) + begin + (i * N + static_cast<size_t>(lane)) * sizeof(float);
-}
-
-// Calls copy(float of the lane, float of the other batch) for all of them.
-template <int N, bool kFixedB, class Copy>
-void VisitLane(ContactBatch<N, kFixedB>& batch, int lane, ContactBatch<1, kFixedB>& single, Copy&& copy) {
-    using Region = LaneRegion<N, kFixedB>;
-    using Single = LaneRegion<1, kFixedB>;
-    static_assert(Region::kCount == Single::kCount);
-    for (size_t i = 0; i < Region::kCount; ++i)
-        copy(LaneAt(batch, Region::kBegin, i, lane), LaneAt(single, Single::kBegin, i, 0));
-}
 
 // The impulses of the rows are applied to the bodies' velocities without the warm start: `sign` 1 takes them out of the
 // warm start, -1 adds them to it.

@@ -11,7 +11,7 @@ using namespace contacts;
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void FindOutdated(ContactBatch<N, kFixedB>& batch, const Twist<Wide<N>>& moved) {
     using Real = Wide<N>;
-    const uint32_t used = (1u << batch.count) - 1;
+    const uint32_t used = LanesOf(batch);
     Real arm = Dot<Real>(batch.armA, batch.armA);
     if constexpr (!kFixedB) arm = Max(arm, Dot<Real>(batch.sideB.arm, batch.sideB.arm));
     const Real perRadius = batch.inverseSoftDepth * batch.inverseSoftDepth;

@@ -61,6 +61,11 @@ inline uint8_t StiffnessOf(int substeps, int systemSubsteps, float longer) {
     return stiffness;
 }
 
+// ContactSolveSettings::mostError for steps of dt seconds: 0.3 inner radii of the smaller body per second; in steps
+// longer than 1/60 s an error that deepens an overlap by as much in a step. inverseSoftDepth is in quarters of the
+// radius.
+inline float MostVelocityError(float dt) { return 0.02f / std::max(dt, 1.0f / 60); }
+
 // Loads and stiffness change over so many steps of 1/60 s, or longer steps, or over the same time in shorter ones: a
 // load that bounces on its springs would be pumped by springs that stiffen while it rises.
 inline uint32_t StepsFor(uint32_t steps, const StepContext& step) {
@@ -92,6 +97,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     contacts.elapsed = 0;
     contacts.slop = s.penetrationSlop;
     contacts.restitutionSpeed = s.restitutionSpeed;
+    contacts.mostError = MostVelocityError(step.dt);
     const float frequency = std::min(s.contactFrequency, stiffest);
     contacts.Soften(frequency, std::max(s.contactDampingRatio, LeastDampingRatio(frequency, h)), h, s.contactPushSpeed);
 

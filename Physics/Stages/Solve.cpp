@@ -12,6 +12,7 @@
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
+#include <Fulcrum/Physics/Stages/LocalIterations.h>
 #include <Fulcrum/Physics/Stages/PrefetchLines.h>
 #include <Fulcrum/Physics/Stages/Recollide.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -31,6 +32,9 @@ enum class Verb : uint8_t {
     WarmStart,
     FirstVelocities,
     Velocities,
+    // Serial, for contacts with large velocity errors (LocalIterations.h):
+    IterateVelocities,
+    IterateRelax,
     ClearPulls,
     FirstPull,
     Pull,
@@ -41,6 +45,7 @@ enum class Verb : uint8_t {
     FirstCorrection,
     Correction,
     Separations,
+    NoteImpulses,  // for contact events
     NextSubstep,
     // For contacts whose bodies moved too far relative to each other (Recollide.h):
     StoreOutdated,
@@ -52,7 +57,6 @@ struct Phase {
     Verb verb;
     uint8_t substep;
     uint16_t color;  // of the large group, from 0; equal to the number of its colors: the overflow
-    bool isLast;     // last phase over batches of its substep
 };
 
 // Prefetches the next batch while this one is solved.
@@ -68,17 +72,14 @@ bool IsOfRecollision(Verb verb) {
     return verb == Verb::StoreOutdated || verb == Verb::Recollide || verb == Verb::Refill;
 }
 
-// Each substep ends with a verb over batches.
-bool IsLastOfSubstep(std::span<const Verb> verbs, size_t i) {
-    return i + 1 == verbs.size() || verbs[i + 1] == Verb::NextSubstep;
-}
+bool IsSerial(Verb verb) { return verb == Verb::IterateVelocities || verb == Verb::IterateRelax; }
 
 class StepSolver {
 public:
     // pseudo: zeroed pseudo-velocities of all bodies; null if the group has no joints that are far apart.
     // pushes: by body; empty if not requested.
     StepSolver(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, const SolverGroup& group,
-               const Effort& effort, BodyState* pseudo, std::span<PushNote> pushes)
+               const Effort& effort, BodyState* pseudo, std::span<PushNote> pushes, const LocalMemory& local)
         : stores_(stores),
           moved_(moved),
           bodies_(moved.store),
@@ -90,7 +91,8 @@ public:
           notes_(layout.notes.empty() ? nullptr : layout.notes.data()),
           rare_{stores.pairs.records.data(), moved.store.poses.data(), stores.pairs.surfaceVelocities.data(),
                 std::min(moved.settings.contactPushSpeed, moved.settings.depenetrationSpeed)},
-          h_(effort.substepDt) {}
+          h_(effort.substepDt),
+          local_(stores.bodies, stores.joints, layout, group, local) {}
 
     // A large group: all workers, phase by phase.
     void RunTogether(std::span<const Phase> phases, const StepWorkers& workers) {
@@ -104,8 +106,7 @@ public:
     // A group of small islands: one worker, from beginning to end.
     void RunAlone(std::span<const Verb> verbs, WorkerFindings& findings) {
         uint8_t substep = 0;
-        for (size_t i = 0; i < verbs.size(); ++i) {
-            const Verb verb = verbs[i];
+        for (const Verb verb : verbs) {
             if (IsOverBodies(verb)) {
                 RunBodies(verb, substep,
                           std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin),
@@ -117,10 +118,13 @@ public:
                 continue;
             }
             if (IsSkipped(verb, substep)) continue;
+            if (IsSerial(verb)) {
+                RunIterated(verb, substep);
+                continue;
+            }
             if (group_.HasTrees()) RunTrees(verb, substep);
             for (uint32_t c = group_.colorsBegin; c < group_.colorsEnd; ++c)
-                RunBatches({verb, substep, 0, IsLastOfSubstep(verbs, i)}, layout_.colors[c], 0,
-                           layout_.colors[c].Count(), findings);
+                RunBatches({verb, substep, 0}, layout_.colors[c], 0, layout_.colors[c].Count(), findings);
         }
     }
 
@@ -128,7 +132,7 @@ private:
     uint32_t BlockCount(const Phase& phase) const {
         if (IsOverBodies(phase.verb))
             return (group_.bodiesEnd - group_.bodiesBegin + kBodiesPerBlock - 1) / kBodiesPerBlock;
-        if (phase.color == group_.colorsEnd - group_.colorsBegin) return 1;
+        if (IsSerial(phase.verb) || phase.color == group_.colorsEnd - group_.colorsBegin) return 1;
         return (layout_.colors[group_.colorsBegin + phase.color].Count() + kBatchesPerBlock - 1) / kBatchesPerBlock;
     }
 
@@ -139,11 +143,11 @@ private:
             RunBodies(phase.verb, phase.substep, std::span(layout_.bodies).subspan(begin, count), findings);
         } else if (IsSkipped(phase.verb, phase.substep)) {
             return;
+        } else if (IsSerial(phase.verb)) {
+            RunIterated(phase.verb, phase.substep);
         } else if (phase.color == group_.colorsEnd - group_.colorsBegin) {
             ForEachOverflowList(layout_, [&](auto& batches) {
                 for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch, findings);
-                if (phase.isLast)
-                    for (const auto& batch : batches) Note(batch);
             });
         } else {
             const ColorBatches& color = layout_.colors[group_.colorsBegin + phase.color];
@@ -199,6 +203,9 @@ private:
             }
             case Verb::Relax: solve(true); break;
             case Verb::IntegrateVelocities:
+            case Verb::IterateVelocities:
+            case Verb::IterateRelax:
+            case Verb::NoteImpulses:
             case Verb::ClearPulls:
             case Verb::FirstPull:
             case Verb::Pull:
@@ -233,20 +240,16 @@ private:
                 if (i + 1 < last) Prefetch(list.batches[batch + 1]);
                 RunBatch(phase.verb, phase.substep, list.batches[batch], findings);
             }
-            if (phase.isLast && notes_)
-                for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i)
-                    Note(list.batches[range.begin + i - first]);
             first = last;
         });
     }
 
-    // For contact events.
-    template <int N, bool kFixedB>
-    void Note(const ContactBatch<N, kFixedB>& batch) const {
-        if (batch.hasNotes) AddRowImpulses(batch, notes_);
+    // Additional iterations over single contacts.
+    void RunIterated(Verb verb, uint8_t substep) {
+        const bool relax = verb == Verb::IterateRelax;
+        const ContactSolveSettings settings = ContactSettingsAt(substep, relax ? 1 : 0.5f);
+        local_.Run(bodies_.states.data(), settings, substep, relax);
     }
-    template <class Batch>
-    void Note(const Batch&) const {}
 
     template <int N, bool kFixedB>
     void RunBatch(Verb verb, uint8_t substep, ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
@@ -255,7 +258,10 @@ private:
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             // Poses are integrated with these velocities over the whole substep: they approximate those at its middle.
             case Verb::FirstVelocities:
-            case Verb::Velocities: SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f)); break;
+            case Verb::Velocities:
+                SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f));
+                local_.Check(batch, substep);
+                break;
             case Verb::FirstPull:
             case Verb::Pull:
             case Verb::StopPulls: PullContacts(batch, pseudo_, effort_.contacts); break;
@@ -290,7 +296,12 @@ private:
                                bodies_, batch);
                 break;
             }
+            case Verb::NoteImpulses:
+                if (batch.hasNotes) AddRowImpulses(batch, notes_);
+                break;
             case Verb::IntegrateVelocities:
+            case Verb::IterateVelocities:
+            case Verb::IterateRelax:
             case Verb::ClearPulls:
             case Verb::IntegratePoses:
             case Verb::NextSubstep: break;
@@ -314,6 +325,9 @@ private:
             case Verb::Correction: CorrectJoints(batch, bodies_.ForSolver(), settings); break;
             case Verb::Separations: UpdateJoints(batch, bodies_.ForSolver(), settings); break;
             case Verb::IntegrateVelocities:
+            case Verb::IterateVelocities:
+            case Verb::IterateRelax:
+            case Verb::NoteImpulses:
             case Verb::ClearPulls:
             case Verb::StopPulls:
             case Verb::IntegratePoses:
@@ -328,8 +342,9 @@ private:
     void NoteOutdated(const Batch& batch, uint8_t substep) {
         if ((batch.rotated | batch.slid) != 0) lastOutdated_.store(substep + 1, std::memory_order_relaxed);
     }
-    // Whether no contact is outdated at the beginning of this substep.
+    // Whether no contact is outdated at the beginning of this substep, or has a large velocity error in it.
     bool IsSkipped(Verb verb, uint8_t substep) const {
+        if (IsSerial(verb)) return !local_.AreNeededIn(substep);
         return IsOfRecollision(verb) && lastOutdated_.load(std::memory_order_relaxed) != substep;
     }
     CollideStores StoresAt(uint8_t substep) const {
@@ -370,6 +385,7 @@ private:
     RareContactData rare_;
     float h_;                            // s, of a substep
     std::atomic<int> lastOutdated_ = 0;  // the substep, from 1, after which some contact was outdated last
+    LocalIterations local_;
 };
 
 // Iterations over the pseudo-velocities per substep, for groups with joints that are far apart.
@@ -377,10 +393,10 @@ constexpr int kPullIterations = 4;
 // Additional iterations over contacts only, so that non-penetration wins.
 constexpr int kStopIterations = 2;
 
-// The solver loop as the sequence of its verbs. pulls: some joints are far apart.
-std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, ScratchArena& scratch) {
+// The solver loop as the sequence of its verbs. pulls: some joints are far apart. notes: for contact events.
+std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, bool notes, ScratchArena& scratch) {
     const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
-                                               kPullIterations + kStopIterations + 11);
+                                               kPullIterations + kStopIterations + 15);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -391,6 +407,7 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, Scratch
         if (substep == 0) verbs[n++] = Verb::WarmStart;
         for (int i = 0; i < settings.velocityIterations; ++i)
             verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
+        verbs[n++] = Verb::IterateVelocities;
         if (pulls) {
             verbs[n++] = Verb::ClearPulls;
             for (int i = 0; i < kPullIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstPull : Verb::Pull;
@@ -403,6 +420,8 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, Scratch
         for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? first : next;
         // The next substep needs current separations.
         if (corrects || settings.positionIterations == 0) verbs[n++] = Verb::Separations;
+        else verbs[n++] = Verb::IterateRelax;
+        if (notes) verbs[n++] = Verb::NoteImpulses;
     }
     return verbs.first(n);
 }
@@ -416,13 +435,11 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout&
     std::span<Phase> phases = scratch.Allocate<Phase>(verbs.size() * std::max<size_t>(colors, 1));
     size_t n = 0;
     uint8_t substep = 0;
-    for (size_t i = 0; i < verbs.size(); ++i) {
-        const Verb verb = verbs[i];
+    for (const Verb verb : verbs) {
         if (verb == Verb::NextSubstep) ++substep;
-        else if (IsOverBodies(verb)) phases[n++] = {verb, substep, 0, false};
+        else if (IsOverBodies(verb) || IsSerial(verb)) phases[n++] = {verb, substep, 0};
         else
-            for (size_t c = 0; c < colors; ++c)
-                phases[n++] = {verb, substep, static_cast<uint16_t>(c), IsLastOfSubstep(verbs, i)};
+            for (size_t c = 0; c < colors; ++c) phases[n++] = {verb, substep, static_cast<uint16_t>(c)};
     }
     return phases.first(n);
 }
@@ -462,18 +479,19 @@ void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayou
     std::span<std::span<const Verb>> loops = workers.scratch.Allocate<std::span<const Verb>>(groups.size());
     for (size_t g = 0; g < groups.size(); ++g)
         loops[g] = groups[g].IsOwn() || pulls[g] ? loopOf(EffortOf(step, groups[g]), pulls[g]) : usual;
+    const LocalMemory local(moved.store, layout, workers.scratch);
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!groups[g].isLarge) continue;
         const std::span<const Phase> phases = PhasesOf(loops[g], layout, groups[g], workers.scratch);
         if (phases.empty()) continue;
         const Effort effort = EffortOf(step, groups[g]);
-        StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes).RunTogether(phases, workers);
+        StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local).RunTogether(phases, workers);
     }
     workers.jobs.ParallelFor(static_cast<uint32_t>(groups.size()), 1, [&](JobRange range) {
         for (uint32_t g = range.begin; g < range.end; ++g) {
             if (groups[g].isLarge) continue;
             const Effort effort = EffortOf(step, groups[g]);
-            StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes)
+            StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local)
                 .RunAlone(loops[g], workers.findings[range.worker]);
         }
     });
@@ -488,8 +506,9 @@ void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& p
     const bool far =
         std::ranges::any_of(workers.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
     RunVerbs({step, bodies, colliders, joints, coloring, pairs}, {step.settings, colliders, pairs, joints, bodies},
-             layout, far, pushes, workers,
-             [&](const Effort& effort, bool pulls) { return LoopOf(effort.solver, pulls, workers.scratch); });
+             layout, far, pushes, workers, [&](const Effort& effort, bool pulls) {
+                 return LoopOf(effort.solver, pulls, !layout.notes.empty(), workers.scratch);
+             });
     if (pushes.empty()) return;
     for (const SolverGroup& group : layout.groups)
         NotePushes(bodies, std::span(layout.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),

@@ -1,0 +1,37 @@
+// Copies single contacts from and to batches of any width.
+#pragma once
+
+#include <Fulcrum/Constraints/Contacts/ContactKernels.h>
+
+#include <cstddef>
+#include <cstring>
+
+namespace fulcrum::contacts {
+
+// The members from the first vector up to those that do not depend on the manifold are arrays of lanes without gaps, in
+// batches of any width.
+template <int N, bool kFixedB>
+struct LaneRegion {
+    using Batch = ContactBatch<N, kFixedB>;
+    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, inverseSoftDepth);
+    static constexpr size_t kCount = (kEnd - kBegin) / (N * sizeof(float));
+    static_assert(kBegin + kCount * N * sizeof(float) == kEnd);
+};
+
+template <class Batch>
+std::byte* FloatAt(Batch& batch, size_t begin, size_t i, int width, int lane) {
+    return reinterpret_cast<std::byte*>(&batch) + begin +
+           (i * static_cast<size_t>(width) + static_cast<size_t>(lane)) * sizeof(float);
+}
+
+// Calls copy(float of the lane, float of the other batch) for all of them.
+template <int N, bool kFixedB, class Copy>
+void VisitLane(ContactBatch<N, kFixedB>& batch, int lane, ContactBatch<1, kFixedB>& single, Copy&& copy) {
+    using Region = LaneRegion<N, kFixedB>;
+    using Single = LaneRegion<1, kFixedB>;
+    static_assert(Region::kCount == Single::kCount);
+    for (size_t i = 0; i < Region::kCount; ++i)
+        copy(FloatAt(batch, Region::kBegin, i, N, lane), FloatAt(single, Single::kBegin, i, 1, 0));
+}
+
+}  // namespace fulcrum::contacts

@@ -1,0 +1,177 @@
+#include <Fulcrum/Physics/Stages/LocalIterations.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace fulcrum {
+
+namespace {
+
+// Fewer iterations suffice for equal masses.
+constexpr float kLeastMassRatio = 2;
+constexpr int kMostRounds = 256;
+// Chains of contacts under heavy bodies converge slowly without it.
+constexpr float kOverRelaxation = 1.3f;
+
+uint32_t OverflowingContacts(const SolverLayout& layout) {
+    return static_cast<uint32_t>(layout.overflowMoving.size() + layout.overflowFixed.size());
+}
+uint32_t CountContacts(const SolverLayout& layout) {
+    return (layout.moving.count + layout.fixed.count) * kLanes + OverflowingContacts(layout);
+}
+
+template <int N, bool kFixedB>
+constexpr uint32_t WidthOf(std::span<ContactBatch<N, kFixedB>>) {
+    return N;
+}
+
+template <int N, bool kFixedB>
+uint32_t SecondBody(const ContactBatch<N, kFixedB>& batch, int lane) {
+    if constexpr (kFixedB) return batch.bodyA[lane];
+    else return batch.bodyB[lane];
+}
+
+}  // namespace
+
+LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch) {
+    float least = std::numeric_limits<float>::infinity(), most = 0;
+    for (const uint32_t body : layout.bodies) {
+        least = std::min(least, bodies.masses[body].inverseMass);
+        most = std::max(most, bodies.masses[body].inverseMass);
+    }
+    if (most < kLeastMassRatio * least) return;  // no contact will be marked
+    wrongIn = scratch.Allocate<uint8_t>(bodies.Size());
+    contactsBegin = scratch.Allocate<uint32_t>(bodies.Size());
+    contactsEnd = scratch.Allocate<uint32_t>(bodies.Size());
+    contactsOfBodies = scratch.Allocate<uint32_t>(2 * CountContacts(layout));
+    iterates = scratch.Allocate<bool>(CountContacts(layout));
+    for (const uint32_t body : layout.bodies) wrongIn[body] = 0;
+}
+
+LocalIterations::LocalIterations(const BodyStore& bodies, const JointStore& joints, SolverLayout& layout,
+                                 const SolverGroup& group, const LocalMemory& memory)
+    : bodies_(bodies), joints_(joints), layout_(layout), group_(group), memory_(memory) {}
+
+template <int N, bool kFixedB>
+void LocalIterations::MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
+    for (int lane = 0; lane < batch.count; ++lane) {
+        if (!(batch.unsolved >> lane & 1)) continue;
+        const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
+        const float massA = bodies_.masses[a].inverseMass, massB = bodies_.masses[b].inverseMass;
+        if (std::max(massA, massB) < kLeastMassRatio * std::min(massA, massB)) continue;
+        if (joints_.HasAny(a) || joints_.HasAny(b)) continue;
+        memory_.wrongIn[a] = memory_.wrongIn[b] = static_cast<uint8_t>(substep + 1);
+        lastWrong_.store(substep + 1, std::memory_order_relaxed);
+    }
+}
+template void LocalIterations::MarkBodies(const ContactBatch<1, false>&, uint8_t);
+#if FULCRUM_LANES > 1
+template void LocalIterations::MarkBodies(const ContactBatch<kLanes, false>&, uint8_t);
+#endif
+
+// Calls visit(batches, number of lanes, index of the first contact) for the batches of each color and kind, in the
+// order of solving.
+template <class Visit>
+void LocalIterations::VisitRanges(Visit&& visit) {
+    uint32_t first = OverflowingContacts(layout_);
+    const auto visitRange = [&](auto& list, const BatchRange& range) {
+        const uint32_t lanes = range.Count() * kLanes;
+        visit(std::span(list.batches).subspan(range.begin, range.Count()), lanes, first);
+        first += lanes;
+    };
+    if (group_.colorsBegin < group_.colorsEnd) {
+        const ColorBatches& color = layout_.colors[group_.colorsBegin];
+        first += (color.of[kMovingContacts].begin + color.of[kFixedContacts].begin) * kLanes;
+    }
+    for (uint32_t c = group_.colorsBegin; c < group_.colorsEnd; ++c) {
+        visitRange(layout_.moving, layout_.colors[c].of[kMovingContacts]);
+        visitRange(layout_.fixed, layout_.colors[c].of[kFixedContacts]);
+    }
+    if (&group_ != &layout_.groups.front()) return;
+    first = 0;
+    const auto visitOverflow = [&](auto& batches) {
+        visit(std::span(batches), static_cast<uint32_t>(batches.size()), first);
+        first += static_cast<uint32_t>(batches.size());
+    };
+    visitOverflow(layout_.overflowMoving);
+    visitOverflow(layout_.overflowFixed);
+}
+
+void LocalIterations::ListContacts() {
+    const auto visitContacts = [&](auto&& visit) {
+        VisitRanges([&](auto batches, uint32_t count, uint32_t first) {
+            for (uint32_t i = 0; i < count; ++i) {
+                const auto& batch = batches[i / WidthOf(batches)];
+                const int lane = static_cast<int>(i % WidthOf(batches));
+                if (lane >= batch.count) continue;
+                const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
+                if (!joints_.HasAny(a) && !joints_.HasAny(b)) visit(first + i, a, b);
+            }
+        });
+    };
+    const std::span bodies =
+        std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
+    std::span<uint32_t> begin = memory_.contactsBegin, end = memory_.contactsEnd;
+    for (const uint32_t body : bodies) end[body] = 0;
+    uint32_t next = 2 * CountContacts(layout_);
+    visitContacts([&](uint32_t contact, uint32_t a, uint32_t b) {
+        next = std::min(next, 2 * contact);
+        ++end[a];
+        if (b != a) ++end[b];
+    });
+    for (const uint32_t body : bodies) {
+        begin[body] = next;
+        next += end[body];
+        end[body] = begin[body];
+    }
+    VisitRanges([&](const auto&, uint32_t count, uint32_t first) {
+        std::ranges::fill(memory_.iterates.subspan(first, count), false);
+    });
+    visitContacts([&](uint32_t contact, uint32_t a, uint32_t b) {
+        memory_.contactsOfBodies[end[a]++] = contact;
+        if (b != a) memory_.contactsOfBodies[end[b]++] = contact;
+    });
+}
+
+std::span<const uint32_t> LocalIterations::ContactsOf(uint32_t body) const {
+    return memory_.contactsOfBodies.subspan(memory_.contactsBegin[body],
+                                            memory_.contactsEnd[body] - memory_.contactsBegin[body]);
+}
+
+void LocalIterations::Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax) {
+    if (!areListed_) ListContacts();
+    areListed_ = true;
+    const uint8_t mark = static_cast<uint8_t>(substep + 1);
+    const auto addContactsOf = [&](uint32_t body) {
+        for (const uint32_t contact : ContactsOf(body)) memory_.iterates[contact] = true;
+    };
+    for (uint32_t i = group_.bodiesBegin; i < group_.bodiesEnd; ++i)
+        if (memory_.wrongIn[layout_.bodies[i]] == mark) addContactsOf(layout_.bodies[i]);
+    bool isAnyWrong = true;
+    for (int round = 0; round < kMostRounds && isAnyWrong; ++round) {
+        isAnyWrong = false;
+        VisitRanges([&](auto batches, uint32_t count, uint32_t first) {
+            const std::span<bool> iterates = memory_.iterates.subspan(first, count);
+            for (auto next = std::ranges::find(iterates, true); next != iterates.end();
+                 next = std::find(next + 1, iterates.end(), true)) {
+                *next = false;
+                const uint32_t i = static_cast<uint32_t>(next - iterates.begin());
+                auto& batch = batches[i / WidthOf(batches)];
+                const int lane = static_cast<int>(i % WidthOf(batches));
+                if (!IterateContact(batch, lane, kOverRelaxation, states, settings, relax)) continue;
+                isAnyWrong = true;
+                for (const uint32_t body : {batch.bodyA[lane], SecondBody(batch, lane)}) {
+                    memory_.wrongIn[body] = mark;
+                    addContactsOf(body);
+                }
+            }
+        });
+    }
+    // What the last round left.
+    if (isAnyWrong)
+        VisitRanges([&](const auto&, uint32_t count, uint32_t first) {
+            std::ranges::fill(memory_.iterates.subspan(first, count), false);
+        });
+}
+
+}  // namespace fulcrum

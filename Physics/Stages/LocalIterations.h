@@ -1,0 +1,69 @@
+// Additional iterations over the contacts around light bodies that heavy ones hit. Of the approach of a heavy body M to
+// a light one m that lies on the ground, an iteration over all contacts stops only the part m / (m + M): the light body
+// is pressed into its support, and the velocity of recovery, of which a relax iteration stops as little, throws the
+// heavy one back. So where a contact of bodies of different mass has a large velocity error
+// (ContactSolveSettings::mostError), the contacts of both bodies are iterated, and those of all bodies whose contacts
+// turn out to be as wrong, until none is. Serial, in the order of the colors. Bodies with joints are left out: their
+// joints would have to be iterated, too.
+// Used by Solve.
+#pragma once
+
+#include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Physics/Stages/SolverLayout.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/JointStore.h>
+
+#include <atomic>
+#include <span>
+
+namespace fulcrum {
+
+// Scratch memory of all groups of a step. Contacts, and lanes without one, have indices in the order of solving: by
+// group, color, moving before fixed ones; those without a color come before all others.
+struct LocalMemory {
+    // Empty if all bodies have similar masses.
+    LocalMemory(const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch);
+
+    std::span<uint8_t> wrongIn;            // by body: the substep, from 1, in which some contact of it was wrong last
+    std::span<uint32_t> contactsBegin;     // by body: in `contactsOfBodies`
+    std::span<uint32_t> contactsEnd;       // likewise
+    std::span<uint32_t> contactsOfBodies;  // two for each contact
+    std::span<bool> iterates;              // by contact
+};
+
+// Those of one group.
+class LocalIterations {
+public:
+    LocalIterations(const BodyStore& bodies, const JointStore& joints, SolverLayout& layout, const SolverGroup& group,
+                    const LocalMemory& memory);
+
+    // After a velocity iteration over a batch. Called by several threads, for different batches.
+    template <int N, bool kFixedB>
+    void Check(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
+        if (batch.unsolved != 0 && !kFixedB) MarkBodies(batch, substep);
+    }
+
+    // Whether some contact was wrong in the substep.
+    bool AreNeededIn(uint8_t substep) const { return lastWrong_.load(std::memory_order_relaxed) == substep + 1; }
+
+    // relax: after the relax iterations of the substep, else after its velocity iterations.
+    void Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax);
+
+private:
+    template <int N, bool kFixedB>
+    void MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep);
+    template <class Visit>
+    void VisitRanges(Visit&& visit);
+    void ListContacts();
+    std::span<const uint32_t> ContactsOf(uint32_t body) const;
+
+    const BodyStore& bodies_;
+    const JointStore& joints_;
+    SolverLayout& layout_;
+    const SolverGroup& group_;
+    const LocalMemory& memory_;
+    bool areListed_ = false;
+    std::atomic<int> lastWrong_ = 0;  // the substep, from 1
+};
+
+}  // namespace fulcrum
