@@ -40,8 +40,7 @@ void MakeContact(const CollideStores& stores, const PairView& view, uint32_t ind
 PairChange LookAtContact(const CollideStores& stores, uint32_t index, const RelativePose& bInA,
                          WorkerFindings& findings) {
     const Pair& pair = stores.pairs.pairs[index];
-    if (pair.pointCount > 0)
-        NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, bInA, findings);
+    if (pair.pointCount > 0) NoteOverlap(stores.step.settings, stores.bodies, stores.pairs, index, bInA, findings);
     const PairChange change = NoteTouching(stores, index, findings);
     if (pair.pointCount == 0) return PairChange::Ended;  // also if the listener had ignored it
     return TouchesSleepingBody(stores.bodies, pair) ? PairChange::WakesOther : change;

@@ -132,7 +132,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     VisitManifolds(stores.pairs, first, [&](uint32_t index) {
         Pair& pair = stores.pairs.pairs[index];
         if (pair.pointCount > 0)
-            NoteOverlap(stores.step.settings, stores.bodies, stores.joints, stores.pairs, index, view.bInA, findings);
+            NoteOverlap(stores.step.settings, stores.bodies, stores.pairs, index, view.bInA, findings);
         const PairChange change = NoteTouching(stores, index, findings);
         wakes |= TouchesSleepingBody(stores.bodies, pair);
         if (index == first) ofFirst = change;

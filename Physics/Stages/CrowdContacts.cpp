@@ -16,6 +16,9 @@ namespace {
 constexpr float kCenterOffset =
     1e-3f;  // offset of coincident centers: large enough to define a direction, too small to be visible
 constexpr float kCrowdedOverlap = 0.01f;  // smaller overlaps, as of bodies at rest, do not count
+// Crowded bodies are separated up to this: what is left is pushed out at full stiffness, and all contacts of a pile add
+// up, to 1 to 10 m/s with 1 % at steps of 1/240 s.
+constexpr float kSeparatedOverlap = 0.001f;
 // Levels of crowded bodies: bodies that overlap others have the highest. Bodies that touch crowded ones and were
 // crowded before have one level less than their neighbor, since recovery velocities propagate.
 constexpr uint32_t kLevelBits = 2;
@@ -97,8 +100,8 @@ RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& c
     return {bInA.position + Normalized(away, Vector3(0, 1, 0)) * offset, bInA.rotation};
 }
 
-void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const JointStore& joints,
-                 const PairStore& pairs, uint32_t index, const RelativePose& bInA, WorkerFindings& findings) {
+void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const PairStore& pairs, uint32_t index,
+                 const RelativePose& bInA, WorkerFindings& findings) {
     const Pair& pair = pairs.pairs[index];
     if (!pair.fixedB && pair.shapeB->IsConvex()) {
         const float deep = DeepOverlapDistance(*pair.shapeA, *pair.shapeB);
@@ -110,11 +113,12 @@ void NoteOverlap(const SystemSettings& settings, const BodyStore& bodies, const 
     if (!isPlaced && a.crowded == 0 && b.crowded == 0) return;
     const float radii = pair.shapeA->InnerRadius() + (pair.fixedB ? 0.0f : pair.shapeB->InnerRadius());
     const DeepestPoint deepest = DeepestPointOf(bodies, pairs, index, ContactNormal(bodies, pairs, index));
-    const bool overlaps = deepest.separation < -kCrowdedOverlap * radii;
+    const bool overlaps = deepest.separation < -kSeparatedOverlap * radii;
     // A fast approach is an impact, not a placement, and is solved normally.
-    const bool wasPut = isPlaced && overlaps && deepest.approach < settings.depenetrationSpeed;
+    const bool wasPut =
+        isPlaced && deepest.separation < -kCrowdedOverlap * radii && deepest.approach < settings.depenetrationSpeed;
     const auto note = [&](uint32_t body, uint8_t level, uint8_t levelOfOther) {
-        if (level == 0 && !(wasPut && !joints.HasAny(body))) return;
+        if (level == 0 && !wasPut) return;
         const uint8_t now = overlaps ? kOverlaps : uint8_t(std::max<int>(levelOfOther, 1) - 1);
         if (now > 0) findings.crowdedOverlaps.push_back(body << kLevelBits | now);
     };
