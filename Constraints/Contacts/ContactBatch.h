@@ -127,8 +127,9 @@ struct ContactSolveSettings {
     float mostStiffer = 0;  // 0..1: largest reduction
     float slop;             // m: allowed overlap, not corrected
     bool relaxes = true;    // relax iterations follow; friction is then solved in those only
-    // 1/s: the largest velocity error of a normal row, times inverseSoftDepth, with which a contact counts as solved.
-    float mostError = std::numeric_limits<float>::infinity();
+    // The largest velocity error of a normal row with which a contact counts as solved: 1/s, times inverseSoftDepth,
+    // but at least leastError, m/s.
+    float mostError = std::numeric_limits<float>::infinity(), leastError = 0;
     // Restitution, see BounceContacts:
     float restitutionSpeed = 0;      // m/s: restitution threshold, slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without the impulses that the next

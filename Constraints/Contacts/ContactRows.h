@@ -240,14 +240,14 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     SweepNormals<kPass>(batch, settings, stiffer, speed, total);
     NormalImpulses<Real> changes;
     [[maybe_unused]] WideMask<N> isUnsolved = zero > zero;
+    [[maybe_unused]] const Real mostError =
+        Max(Real(settings.mostError) / batch.inverseSoftDepth, Real(settings.leastError));
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         const Real change = total[i] - row.impulse;
         changes.Add(row, change);
         row.impulse = total[i];
-        if constexpr (kFindsErrors)
-            isUnsolved =
-                isUnsolved | (Abs(change) * batch.inverseSoftDepth > row.inverseResponse * Real(settings.mostError));
+        if constexpr (kFindsErrors) isUnsolved = isUnsolved | (Abs(change) > row.inverseResponse * mostError);
     }
     if constexpr (kFindsErrors) batch.unsolved = static_cast<uint16_t>(isUnsolved.ToBits() & LanesOf(batch));
 

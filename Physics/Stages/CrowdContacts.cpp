@@ -17,6 +17,9 @@ namespace {
 constexpr float kCenterOffset =
     1e-3f;  // offset of coincident centers: large enough to define a direction, too small to be visible
 constexpr float kCrowdedOverlap = 0.01f;  // smaller overlaps, as of bodies at rest, do not count
+// Crowded bodies are separated up to this: what is left is pushed out at full stiffness, and all contacts of a pile add
+// up, to 1 to 10 m/s with 1 % at steps of 1/240 s.
+constexpr float kSeparatedOverlap = 0.001f;
 // Levels of crowded bodies: bodies that overlap others have the highest. Bodies that touch crowded ones and were
 // crowded before have one level less than their neighbor, since recovery velocities propagate.
 constexpr uint32_t kLevelBits = 2;
@@ -113,11 +116,12 @@ void NoteOverlap(const CollideStores& stores, uint32_t index, PairShapes shapes,
     const float radii = shapes.a.InnerRadius() + (pair.fixedB ? 0.0f : shapes.b.InnerRadius());
     const DeepestPoint deepest =
         DeepestPointOf(bodies, stores.pairs, index, ContactNormal(bodies, stores.pairs, index));
-    const bool overlaps = deepest.separation < -kCrowdedOverlap * radii;
+    const bool overlaps = deepest.separation < -kSeparatedOverlap * radii;
     // A fast approach is an impact, not a placement, and is solved normally.
-    const bool wasPut = isPlaced && overlaps && deepest.approach < stores.step.settings.depenetrationSpeed;
+    const bool wasPut = isPlaced && deepest.separation < -kCrowdedOverlap * radii &&
+                        deepest.approach < stores.step.settings.depenetrationSpeed;
     const auto note = [&](uint32_t body, uint8_t level, uint8_t levelOfOther) {
-        if (level == 0 && !(wasPut && !stores.joints.HasAny(body))) return;
+        if (level == 0 && !wasPut) return;
         const uint8_t now = overlaps ? kOverlaps : uint8_t(std::max<int>(levelOfOther, 1) - 1);
         if (now > 0) findings.crowdedOverlaps.push_back(body << kLevelBits | now);
     };

@@ -2,6 +2,7 @@
 // crowded. Crowded bodies are those that disperse (Crowd.h), those that overlap a body since they were created, placed
 // or grown, and those that still touch such a body. Their contacts separate them at depenetrationSpeed at most, and
 // they keep none of that velocity: many contacts add up, and relax iterations leave a part of it in the velocities.
+// Jointed ones keep it, since their velocities are also those of their joints.
 // Used by Collide, Prepare, Solve and Store, for different bodies from any number of threads, but for GatherCrowd.
 #pragma once
 

@@ -98,6 +98,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     contacts.slop = s.penetrationSlop;
     contacts.restitutionSpeed = s.restitutionSpeed;
     contacts.mostError = MostVelocityError(step.dt);
+    contacts.leastError = Length(s.gravity) * step.dt;
     const float frequency = std::min(s.contactFrequency, stiffest);
     contacts.Soften(frequency, std::max(s.contactDampingRatio, LeastDampingRatio(frequency, h)), h, s.contactPushSpeed);
 

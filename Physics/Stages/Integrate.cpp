@@ -105,14 +105,16 @@ FULCRUM_FORCE_INLINE void CorrectFlight(BodyStore& bodies, const uint32_t (&inde
 // Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
 float DampingFactor(float damping, float h) { return damping > 0 ? Exp(-damping * h) : 1.0f; }
 
-void IntegrateVelocity(BodyStore& bodies, uint32_t body, float h, bool again, WorkerFindings& findings) {
+void IntegrateVelocity(BodyStore& bodies, const JointStore& joints, uint32_t body, float h, bool again,
+                       WorkerFindings& findings) {
     const BodyDynamics& d = bodies.dynamics[body];
     if (d.motion != MotionType::Dynamic) return;
     const float* a = bodies.poses[body].acceleration;
     SubstepVelocity<float> velocity(bodies, {body}, again);
     if (again && velocity.IsFree()) CorrectFlight<float>(bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
     Vector3 &v = velocity.own.linear, &w = velocity.own.angular;
-    if (again && d.crowded) {
+    // The velocities of jointed bodies are also those of their joints.
+    if (again && d.crowded && !joints.HasAny(body)) {
         v = NoFasterThan(v, velocity.unconstrained.First());
         w = NoFasterThan(w, velocity.unconstrained.Second());
         if (d.dispersing) velocity.carried = {};
@@ -372,12 +374,12 @@ void VisitBodies(std::span<const uint32_t> bodies, InLanes&& inLanes, OneByOne&&
 
 }  // namespace
 
-void IntegrateVelocities(BodyStore& store, std::span<const uint32_t> bodies, float h, bool again,
-                         WorkerFindings& findings) {
+void IntegrateVelocities(BodyStore& store, const JointStore& joints, std::span<const uint32_t> bodies, float h,
+                         bool again, WorkerFindings& findings) {
     VisitBodies(
         bodies,
         [&](const Indices& index, int count) { return IntegrateVelocitiesInLanes(store, index, count, h, again); },
-        [&](uint32_t body) { IntegrateVelocity(store, body, h, again, findings); });
+        [&](uint32_t body) { IntegrateVelocity(store, joints, body, h, again, findings); });
 }
 
 void IntegratePoses(const MovedBodies& moved, std::span<const uint32_t> bodies, float h, bool isLast,

@@ -8,8 +8,8 @@ namespace fulcrum {
 
 // Applies forces, damping, locked axes and speed limits for h seconds. `again`: not the first substep of the step; the
 // velocities are then warm started by the change that constraints made in the last one.
-void IntegrateVelocities(BodyStore& store, std::span<const uint32_t> bodies, float h, bool again,
-                         WorkerFindings& findings);
+void IntegrateVelocities(BodyStore& store, const JointStore& joints, std::span<const uint32_t> bodies, float h,
+                         bool again, WorkerFindings& findings);
 
 // Inputs of IntegratePoses, and the bodies, which it moves. Colliders and pairs are used for the contacts of dispersing
 // bodies.

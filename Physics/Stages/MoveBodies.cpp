@@ -81,7 +81,7 @@ void MoveSolved(BodyStore& bodies, const JointStore& joints, Ending& ending, flo
     Quaternion& rotation = ending.turn.rotation;
     Vector3& w = ending.turn.angularVelocity;
     ending.displacement = Vector3(s.deltaPosition[0], s.deltaPosition[1], s.deltaPosition[2]);
-    if (d.crowded) {
+    if (d.crowded && !joints.HasAny(body)) {
         const auto& free = bodies.unconstrained[body].row;
         ending.v = NoFasterThan(ending.v, VectorAt<BodyState::kLinear>(free));
         w = NoFasterThan(w, VectorAt<BodyState::kAngular>(free));

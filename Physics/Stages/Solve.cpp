@@ -162,7 +162,7 @@ private:
             if (!pushes_.empty()) NoteMoved(bodies_, bodies, pseudo_, pushes_);
         } else if (verb == Verb::IntegrateVelocities) {
             if (!pushes_.empty() && substep > 0) NotePushes(bodies_, bodies, h_, pushes_);
-            IntegrateVelocities(bodies_, bodies, h_, substep > 0, findings);
+            IntegrateVelocities(bodies_, moved_.joints, bodies, h_, substep > 0, findings);
         } else {
             for (const uint32_t body : bodies) pseudo_[body] = {};
         }
@@ -247,7 +247,9 @@ private:
     // Additional iterations over single contacts.
     void RunIterated(Verb verb, uint8_t substep) {
         const bool relax = verb == Verb::IterateRelax;
-        const ContactSolveSettings settings = ContactSettingsAt(substep, relax ? 1 : 0.5f);
+        ContactSolveSettings settings = ContactSettingsAt(substep, relax ? 1 : 0.5f);
+        // Friction, too: what many iterations push would slip away.
+        settings.relaxes = false;
         local_.Run(bodies_.states.data(), settings, substep, relax);
     }
 

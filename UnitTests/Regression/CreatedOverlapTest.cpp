@@ -6,6 +6,7 @@
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace fulcrum::testing {
@@ -59,7 +60,7 @@ TEST_P(CreatedOverlap, OfAStackOnAFloorLeavesLittleSpeed) {
     for (int i = 0; i < 4; ++i)
         ids.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + double{height} * i, 0}}));
     const Result result = RunFor(world, ids, 6);
-    if (Part() <= 0.5f) EXPECT_LT(result.fastest, 0.7);
+    if (Part() <= 0.5f) EXPECT_LT(result.fastest, 0.8);
     else EXPECT_LT(result.fastest, 5);  // what was in one place falls down beside it
     EXPECT_LT(result.left, 0.02);
 }
@@ -77,10 +78,58 @@ TEST_P(CreatedOverlap, OfAPyramidLeavesLittleSpeed) {
                     world.Add({.shape = CubeOf(0.5f), .position = {size * (j + 0.5 * i), 0.5 + size * i, 0}}));
         const Result result = RunFor(world, ids, 8);
         // At one substep a box may come to fall from the top.
-        const double most = Substeps() == 1 ? 10 : 2.5;
-        EXPECT_LT(result.fastest, hasGravity ? most : 1.5);
+        const double most = Substeps() == 1 ? 10 : 1.8;
+        EXPECT_LT(result.fastest, hasGravity ? most : 0.5);
         EXPECT_LT(result.left, Substeps() == 1 ? 0.08 : 0.02);  // what its weight presses in
     }
+}
+
+// Overlaps of all depths are separated slowly up to the end, also in short steps, with much effort: what was left at
+// 1 % of the size was pushed out at full stiffness, and 64 spheres left at up to 1.9 m/s.
+TEST_P(CreatedOverlap, OfAGridInShortStepsLeavesNoSpeed) {
+    for (const ShapePtr& shape : {SphereOf(0.5f), CubeOf(0.5f)}) {
+        TestWorld world(Settings(false));
+        std::vector<BodyId> ids;
+        const double size = 1 - 0.2 * double{Part()};
+        for (int i = 0; i < 64; ++i)
+            ids.push_back(
+                world.Add({.shape = shape, .position = {size * (i % 4), size * (i / 4 % 4), size * (i / 16)}}));
+        const double dt = kStep / 4;
+        double fastest = 0;
+        for (int step = 0; step < 480; ++step) {
+            world.Step(dt);
+            for (const BodyId id : ids) fastest = std::max<double>(fastest, Length(world.VelocityOf(id)));
+        }
+        EXPECT_LT(fastest, 0.3) << ShapeTypeName(shape->Type());
+        EXPECT_LT(world.Report().largestPenetration, 0.01f) << ShapeTypeName(shape->Type());
+    }
+}
+
+// The energy of chains that lie across each other does not grow: ragdolls of a heap gained 1.9 kJ in their first step
+// with 4 substeps and 7.9 kJ with 64.
+TEST_P(CreatedOverlap, OfJointedBodiesLeavesLittleSpeed) {
+    if (Part() > 0.5f) return;  // axes in one plane: pushed to both sides
+    TestWorld world(Settings(false));
+    std::vector<BodyId> ids;
+    const float radius = 0.1f, half = 0.3f;
+    for (int chain = 0; chain < 6; ++chain) {
+        const double along = 0.35 * (chain / 2);
+        const bool isAcross = chain % 2 == 1;
+        const Quaternion rotation = isAcross ? Quaternion{0, 0, std::sqrt(0.5f), std::sqrt(0.5f)}
+                                             : Quaternion{std::sqrt(0.5f), 0, 0, std::sqrt(0.5f)};
+        for (int i = 0; i < 4; ++i) {
+            const double at = 0.8 * (i - 1.5);
+            const Position position(isAcross ? at : along, 2 * (1 - Part()) * radius * isAcross, isAcross ? along : at);
+            ids.push_back(world.Add({.shape = CapsuleOf(half, radius), .position = position, .rotation = rotation}));
+            if (i == 0) continue;
+            PointJointSettings joint;
+            joint.bodyA = ids[ids.size() - 2];
+            joint.bodyB = ids.back();
+            joint.anchorA.point = position - (isAcross ? Position(0.4, 0, 0) : Position(0, 0, 0.4));
+            ASSERT_TRUE(world.System().Joints().Create(joint));
+        }
+    }
+    EXPECT_LT(RunFor(world, ids, 2).fastest, 0.8);
 }
 
 // All points are pushed as fast, however deep each is: what comes out tilted falls back onto the floor from there.

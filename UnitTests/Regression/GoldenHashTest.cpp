@@ -12,9 +12,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x87514cca87400bbbull;
-constexpr uint64_t kGoldenHashOfJoints = 0xc5a59a1f6ca9c0c5ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xe210a4d08f540ff2ull;
+constexpr uint64_t kGoldenHash = 0x96f785040aa8ade6ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x5d34c25859753576ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xdb94df56198b8457ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x022a9e2488d02425ull;
 
 std::string Hex(uint64_t number) {
