@@ -25,6 +25,7 @@ struct SnapshotRoom {
     Array<uint32_t> changed;
     NumberedFilters filters;
     SavedEfforts efforts;
+    Array<ColliderShape> pieces;  // that colliders had before ReadSnapshot
 };
 size_t HeapBytes(const SnapshotRoom& room);
 
