@@ -72,10 +72,9 @@ void Enlarge(ColliderStore& colliders, SweepStore& sweeps, uint32_t collider, co
     colliders.Queue(collider);
     Collider& c = colliders.colliders[collider];
     c.fat.Include(bounds);
+    if (sweeps.enlargedTree.Contains(collider)) return sweeps.enlargedTree.Update(collider, c.fat);
     sweeps.enlarged.push_back(collider);
-    if (c.sensor) return;
-    if (sweeps.enlargedTree.Contains(collider)) sweeps.enlargedTree.Update(collider, c.fat);
-    else sweeps.enlargedTree.Insert(collider, c.fat);
+    if (!c.sensor) sweeps.enlargedTree.Insert(collider, c.fat);
 }
 
 // Colliders that the solver moved out of their fat bounds get bounds that contain the whole path, so that tree searches

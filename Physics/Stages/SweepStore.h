@@ -115,8 +115,8 @@ struct SweepStore {
     Array<uint32_t> active, next;  // indices into `swept`, of this round and the next
     Array<SweepHit> hits;          // of a round; afterwards those postponed to the next
     Array<SweepHit> keptHits;      // temporary
-    // Colliders whose fat bounds the stage enlarged, in its order, with repetitions, and a tree of these bounds without
-    // sensors. Those of the world are updated at its end, so that queries may read them meanwhile.
+    // Colliders whose fat bounds the stage enlarged, and a tree of these bounds without sensors. The trees of the world
+    // are updated at its end, so that queries may read them meanwhile.
     Array<uint32_t> enlarged;
     BoundsTree enlargedTree;
     bool reportsHits = false;     // whether contact events are on in this step
