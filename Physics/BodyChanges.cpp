@@ -409,9 +409,11 @@ BodyBounds BodyInterface::GetBounds(BodyId id) const {
     const BodyReading reading(world_, locks_, id);
     if (!reading) return {};
     Bounds all;
-    VisitColliders(world_, id.index,
-                   [&](uint32_t collider) { all.Include(TightBoundsOf(world_.bodies, world_.colliders, collider)); });
-    const Position center = world_.bodies.ExactCenterOf(id.index);
+    const Pose pose = world_.seenPoses.PoseOf(world_.lock, world_.bodies, id.index);
+    VisitColliders(world_, id.index, [&](uint32_t collider) {
+        all.Include(TightBoundsAt(pose, world_.bodies, world_.colliders, collider));
+    });
+    const Position center = world_.seenPoses.ExactPoseOf(world_.lock, world_.bodies, id.index).position;
     if (all.IsEmpty()) return {center, center};
     const Position& origin = world_.colliders.boundsOrigin;
     return {origin + all.lower.cast<double>(), origin + all.upper.cast<double>()};

@@ -377,14 +377,15 @@ Status BodyInterface::Sleep(BodyId id) {
 Pose BodyInterface::GetPose(BodyId id) const {
     const BodyReading reading(world_, locks_, id);
     if (!reading) return {};
-    const Quaternion rotation = world_.bodies.RotationOf(id.index);
+    const Pose center = world_.seenPoses.ExactPoseOf(world_.lock, world_.bodies, id.index);
     const Vector3 offset = world_.bodies.cold[id.index].shape->Mass().centerOfMass;
-    return {world_.bodies.ExactCenterOf(id.index) - Rotate(rotation, offset).cast<double>(), rotation};
+    return {center.position - Rotate(center.rotation, offset).cast<double>(), center.rotation};
 }
 
 Position BodyInterface::GetCenterOfMass(BodyId id) const {
     const BodyReading reading(world_, locks_, id);
-    return reading ? world_.bodies.ExactCenterOf(id.index) : Position(Position::Zero());
+    if (!reading) return Position::Zero();
+    return world_.seenPoses.ExactPoseOf(world_.lock, world_.bodies, id.index).position;
 }
 Vector3 BodyInterface::GetLinearVelocity(BodyId id) const {
     const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);

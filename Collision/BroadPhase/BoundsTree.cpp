@@ -234,6 +234,13 @@ void BoundsTree::Clear() {
     area_ = builtArea_ = debt_ = 0;
 }
 
+void BoundsTree::Reserve(size_t ids) {
+    if (ids > places_.size()) places_.resize(ids, kNowhere);
+    gathered_.reserve(ids);
+    // Nodes of eight, the nodes above them, and those on the ways to nodes that are not full.
+    nodes_.reserve(ids / kWidth + ids / (kWidth * (kWidth - 2)) + 2 * kMaxDepth);
+}
+
 Bounds BoundsTree::TotalBounds() const { return size_ == 0 ? Bounds{} : Unpack(Union(nodes_[kRoot])); }
 
 float BoundsTree::Cost() const {

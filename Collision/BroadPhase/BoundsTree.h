@@ -62,6 +62,8 @@ public:
 
     // Removes all leaves and keeps the memory.
     void Clear();
+    // Allocates all that a tree of ids below `ids` needs.
+    void Reserve(size_t ids);
 
     // Calls visit(uint32_t id) for every leaf whose bounds overlap `bounds` (touching counts; infinite bounds are
     // allowed). Allocates nothing. The visitor must not change the tree.

@@ -64,7 +64,7 @@ struct ConvexTriangles {
     }
     void Emit(const Vector3& a, const Vector3& b, const Vector3& c) const {
         const Vector3 cross = Cross<float>(Vector3(b - a), Vector3(c - a));
-        if (!cross.isZero(0)) visit({{a, b, c}});
+        if (!cross.isZero(0)) visit({.corners = {a, b, c}});
     }
 };
 
@@ -82,8 +82,8 @@ void VisitPlane(const Plane& plane, float extent, const TriangleVisitor& visit) 
     const Vector3 n = plane.Normal();
     const Vector3 across = Perpendicular(n), u = across * extent, v = Cross<float>(n, across) * extent,
                   center = n * plane.Offset();
-    visit({{center - u - v, center + u - v, center + u + v}});
-    visit({{center - u - v, center + u + v, center - u + v}});
+    visit({.corners = {center - u - v, center + u - v, center + u + v}});
+    visit({.corners = {center - u - v, center + u + v, center - u + v}});
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ void VisitTriangles(const Shape& shape, FunctionRef<void(const DrawnTriangle&)> 
         all.upper = Vector3::Constant(everywhere);
         surface.VisitTriangles(all, [&](uint32_t id) {
             const TriangleView view = surface.GetTriangle(id);
-            visit({{view.vertices[0], view.vertices[1], view.vertices[2]}});
+            visit({.corners = {view.vertices[0], view.vertices[1], view.vertices[2]}, .material = view.material});
         });
     } else if (shape.Type() == ShapeType::Plane) {
         VisitPlane(static_cast<const Plane&>(shape), planeExtent, visit);

@@ -7,7 +7,8 @@
 namespace fulcrum {
 
 struct DrawnTriangle {
-    Vector3 corners[3];  // m, counter-clockwise seen from outside, or from the front of a surface
+    Vector3 corners[3];    // m, counter-clockwise seen from outside, or from the front of a surface
+    uint8_t material = 0;  // of a surface: index into its materials
 };
 
 // Calls visit for the triangles of a shape, in the frame in which the user described it. Boxes, hulls, meshes and

@@ -50,7 +50,7 @@ public:
     const Shape& ShapeOf(uint32_t collider) const { return *world_.colliders.shapes[collider].shape; }
     Pose PoseOf(uint32_t collider) const {
         const ColliderShape& piece = world_.colliders.shapes[collider];
-        const Pose body = world_.bodies.ExactCenterPoseOf(BodyOf(collider));
+        const Pose body = world_.seenPoses.ExactPoseOf(world_.lock, world_.bodies, BodyOf(collider));
         return piece.offset ? body * LocalOf(world_.bodies, world_.colliders, collider) : body;
     }
     // Tie-breaking order: by body, then child.

@@ -29,7 +29,7 @@ void SnapshotAccess::Resize(ColliderStore& colliders, uint32_t count) {
 
 void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
     for (uint32_t i = count; i < pairs.pairs.size(); ++i)
-        if (const uint64_t key = KeyOf(pairs, i); key != kNoKey) pairs.RemoveKey(key, i);
+        if (const uint64_t key = PlaceOf(pairs.pairs[i]).key; key != kNoKey) pairs.RemoveKey(key, i);
     // While pairs are read the table also contains the previous ones.
     if (size_t places = std::max<size_t>(pairs.table_.size(), 1024);
         2 * size_t{count} > places || pairs.table_.empty()) {
@@ -79,8 +79,9 @@ void SnapshotAccess::ListSpecial(BodyStore& bodies) {
     }
 }
 
-void SnapshotAccess::AttachPieces(const BodyStore& bodies, ColliderStore& store) {
+bool SnapshotAccess::AttachPieces(const BodyStore& bodies, ColliderStore& store) {
     store.shapes.assign(store.shapes.size(), {});
+    bool areSame = true;
     for (uint32_t body = 0; body < bodies.Size(); ++body) {
         const BodyCold& cold = bodies.cold[body];
         if (!cold.exists && !cold.removed) continue;
@@ -88,6 +89,7 @@ void SnapshotAccess::AttachPieces(const BodyStore& bodies, ColliderStore& store)
         uint32_t child = 0;
         const auto attachRun = [&](uint32_t first, uint32_t count) {
             for (uint32_t i = first; i < first + count; ++i, ++child) {
+                areSame &= store.colliders[i].body == body;
                 store.colliders[i].body = body;
                 if (!compound) store.shapes[i].shape = cold.shape.get();
                 else if (child < compound->Children().size())
@@ -98,6 +100,7 @@ void SnapshotAccess::AttachPieces(const BodyStore& bodies, ColliderStore& store)
         for (uint32_t run = cold.MoreColliders(); run != ColliderStore::kNone; run = store.runs[run].next)
             attachRun(store.runs[run].first, store.runs[run].count);
     }
+    return areSame;
 }
 
 void SnapshotAccess::ListMoved(ColliderStore& colliders) {
@@ -141,35 +144,6 @@ void SnapshotAccess::ClearColors(uint32_t bodies, ConstraintColoring& coloring) 
     std::ranges::fill(coloring.used_, uint64_t{0});
     std::ranges::fill(coloring.overflows_, 0u);
     coloring.size_ = 0;
-}
-
-void SnapshotAccess::ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
-                               const ConstraintColoring::Entry& entry, const ColorSlot& place) {
-    if (place.color == ColorSlot{}.color) return;
-    Array<ConstraintColoring::Entry>& list = coloring.List(place.color, kind);
-    if (place.slot >= list.size()) list.resize(place.slot + 1);
-    list[place.slot] = entry;
-    ++coloring.size_;
-    ConstraintColoring::VisitMoving(entry, [&](uint32_t body) {
-        if (place.color == ConstraintColoring::kOverflow) ++coloring.overflows_[body];
-        else coloring.used_[body] |= uint64_t(1) << place.color;
-    });
-}
-
-void SnapshotAccess::AttachPair(const ColliderStore& colliders, PairStore& store, ConstraintColoring& coloring,
-                                uint32_t index, uint64_t before) {
-    // Few pairs differ from the previous ones.
-    const uint64_t key = KeyOf(store, index);
-    if (key != before) {
-        if (before != kNoKey) store.RemoveKey(before, index);
-        if (key != kNoKey) store.AddKey(key, index);
-    }
-    Pair& pair = store.pairs[index];
-    if (!pair.exists) return;
-    pair.bodyA = colliders.colliders[pair.colliderA].body;
-    pair.bodyB = colliders.colliders[pair.colliderB].body;
-    if (pair.contact != PairStore::kNone)
-        ListColor(coloring, KindOf(pair), EntryOf(pair), store.contacts[pair.contact].color);
 }
 
 }  // namespace fulcrum

@@ -15,6 +15,39 @@
 
 namespace fulcrum {
 
+inline void SnapshotAccess::ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
+                                      const ConstraintColoring::Entry& entry, const ColorSlot& place) {
+    if (place.color == ColorSlot{}.color) return;
+    Array<ConstraintColoring::Entry>& list = coloring.List(place.color, kind);
+    if (place.slot >= list.size()) list.resize(place.slot + 1);
+    list[place.slot] = entry;
+    ++coloring.size_;
+    ConstraintColoring::VisitMoving(entry, [&](uint32_t body) {
+        if (place.color == ConstraintColoring::kOverflow) ++coloring.overflows_[body];
+        else coloring.used_[body] |= uint64_t(1) << place.color;
+    });
+}
+
+inline void SnapshotAccess::AttachPair(const ColliderStore& colliders, bool areBodiesSame, PairStore& store,
+                                       ConstraintColoring& coloring, uint32_t index, const PairPlace& before) {
+    // Few pairs differ from the previous ones.
+    const PairPlace place = PlaceOf(store.pairs[index]);
+    if (place.key != before.key) {
+        if (before.key != kNoKey) store.RemoveKey(before.key, index);
+        if (place.key != kNoKey) store.AddKey(place.key, index);
+    }
+    Pair& pair = store.pairs[index];
+    if (!pair.exists) return;
+    if (!areBodiesSame || place != before || place.key == kNoKey) {
+        pair.bodyA = colliders.colliders[pair.colliderA].body;
+        pair.bodyB = colliders.colliders[pair.colliderB].body;
+    }
+    FULCRUM_ASSERT(pair.bodyA == colliders.colliders[pair.colliderA].body &&
+                   pair.bodyB == colliders.colliders[pair.colliderB].body);
+    if (pair.contact != PairStore::kNone)
+        ListColor(coloring, KindOf(pair), EntryOf(pair), store.contacts[pair.contact].color);
+}
+
 namespace {
 
 Error Missing(const char* what, uint64_t hash, const char* remedy) {
@@ -26,9 +59,14 @@ Error Missing(const char* what, uint64_t hash, const char* remedy) {
 // Results of the first pass.
 struct Found {
     SnapshotHead head;
-    // By body; null: keeps its current one.
-    Array<ShapePtr> shapes;
-    Array<std::shared_ptr<MutableCompound>> compounds;
+    // Of bodies that do not keep their current ones.
+    template <class T>
+    struct Of {
+        uint32_t body;
+        T is;
+    };
+    Array<Of<ShapePtr>> shapes;
+    Array<Of<std::shared_ptr<MutableCompound>>> compounds;
     Array<std::shared_ptr<const GroupFilter>> filters;  // by number
     Array<uint32_t> filtered;                 // for each body with a filter: its index, then the filter's number
     Array<bool> hasJoint;                     // by joint
@@ -68,8 +106,6 @@ private:
 
 Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const ShapePtr> given, Found& found) {
     const uint32_t count = found.head.bodies;
-    found.shapes.resize(count);
-    found.compounds.resize(count);
     KnownShapes known(bodies, given);
     Array<uint32_t> ownCompounds;
     for (uint32_t i = 0; i < count; ++i) {
@@ -78,9 +114,9 @@ Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const Sh
         if (hash == kNoShape || hash == kOwnCompound) continue;
         const BodyCold* now = i < bodies.Size() ? &bodies.cold[i] : nullptr;
         if (now && now->shape && !now->children && ContentHash(*now->shape) == hash) continue;
-        found.shapes[i] = known.Find(hash);
-        if (!found.shapes[i])
-            return Missing("a shape", hash, "no body of the world has; give it in SnapshotSources::shapes");
+        ShapePtr shape = known.Find(hash);
+        if (!shape) return Missing("a shape", hash, "no body of the world has; give it in SnapshotSources::shapes");
+        found.shapes.push_back({i, std::move(shape)});
     }
     Array<uint8_t> bytes;
     for (const uint32_t i : ownCompounds) {
@@ -93,7 +129,7 @@ Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const Sh
         if (!shape) return shape.GetError();
         if (shape.Value()->Type() != ShapeType::MutableCompound)
             return Error{ErrorCode::Degenerate, "damaged snapshot: a shape is no compound that can be edited"};
-        found.compounds[i] = static_cast<const MutableCompound&>(*shape.Value()).Copy();
+        found.compounds.push_back({i, static_cast<const MutableCompound&>(*shape.Value()).Copy()});
     }
     return Done{};
 }
@@ -188,12 +224,10 @@ Status FindJointTypes(SnapshotReader& s, const JointStore& joints, const Snapsho
 void RestoreBodies(SnapshotReader& s, Found& found, BodyStore& bodies) {
     SnapshotAccess::Resize(bodies, found.head.bodies);
     SnapshotAccess::VisitBodies(s, bodies);
-    for (uint32_t i = 0; i < bodies.Size(); ++i) {
-        BodyCold& body = bodies.cold[i];
-        if (found.shapes[i]) body.shape = std::move(found.shapes[i]);
-        if (!found.compounds[i]) continue;
-        body.children->compound = found.compounds[i].get();
-        body.shape = std::move(found.compounds[i]);
+    for (auto& [body, shape] : found.shapes) bodies.cold[body].shape = std::move(shape);
+    for (auto& [body, compound] : found.compounds) {
+        bodies.cold[body].children->compound = compound.get();
+        bodies.cold[body].shape = std::move(compound);
     }
     for (size_t i = 0; i + 1 < found.filtered.size(); i += 2)
         bodies.cold[found.filtered[i]].filter->group.filter = found.filters[found.filtered[i + 1]];
@@ -260,13 +294,13 @@ Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sou
     RestoreBodies(s, found, world.bodies);
     SnapshotAccess::Resize(world.colliders, found.head.colliders);
     SnapshotAccess::VisitColliders(s, world.colliders);
-    SnapshotAccess::AttachPieces(world.bodies, world.colliders);
+    const bool areBodiesSame = SnapshotAccess::AttachPieces(world.bodies, world.colliders);
     SnapshotAccess::ListMoved(world.colliders);
     SnapshotAccess::UpdateTrees(world.bodies, world.colliders);
     SnapshotAccess::ClearColors(world.bodies.Size(), world.coloring);
     SnapshotAccess::Resize(world.pairs, found.head.pairs);
-    SnapshotAccess::VisitPairs(s, world.pairs, [&](uint32_t pair, uint64_t before) {
-        SnapshotAccess::AttachPair(world.colliders, world.pairs, world.coloring, pair, before);
+    SnapshotAccess::VisitPairs(s, world.pairs, [&](uint32_t pair, const SnapshotAccess::PairPlace& before) {
+        SnapshotAccess::AttachPair(world.colliders, areBodiesSame, world.pairs, world.coloring, pair, before);
     });
     RestoreJoints(s, found, world.joints, world.coloring);
     SnapshotAccess::VisitSleeping(s, world.sleeping);

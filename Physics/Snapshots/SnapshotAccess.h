@@ -22,6 +22,14 @@ inline constexpr uint64_t kNoShape = 0, kOwnCompound = 2;
 
 // A class, since it is a friend of the stores.
 struct SnapshotAccess {
+    // The key of a pair in the hash table, kNoKey if it is not there, and which of the two colliders is A.
+    static constexpr uint64_t kNoKey = ~uint64_t{0};
+    struct PairPlace {
+        uint64_t key = kNoKey;
+        uint32_t colliderA = 0;
+        bool operator==(const PairPlace&) const = default;
+    };
+
     static SnapshotHead HeadOf(const WorldState& world, const StepState& step);
     template <class Stream>
     static void VisitHead(Stream& s, SnapshotHead& head);
@@ -30,7 +38,7 @@ struct SnapshotAccess {
     static void VisitBodies(Stream& s, Bodies& bodies);
     template <class Stream, class Colliders>
     static void VisitColliders(Stream& s, Colliders& colliders);
-    // attach(i, before): called for each index; before: KeyOf the previous pair at that index.
+    // attach(i, before): called for each index; before: PlaceOf the previous pair at that index.
     template <class Stream, class Pairs, class Attach>
     static void VisitPairs(Stream& s, Pairs& pairs, const Attach& attach);
     // Indices of removed pairs.
@@ -57,24 +65,23 @@ struct SnapshotAccess {
     static void FindAwakePlaces(BodyStore& bodies);
     // which of them were pushed, are to stop, or stand for the world;
     static void ListSpecial(BodyStore& bodies);
-    // the body and the piece of each collider; which of them moved; the trees;
-    static void AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
+    // the body and the piece of each collider; returns whether all bodies are those that they were; which of them moved;
+    // the trees;
+    static bool AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
     static void ListMoved(ColliderStore& colliders);
     static void UpdateTrees(const BodyStore& bodies, ColliderStore& colliders);
     // a pair's bodies and shapes, its entries in the hash table and in the lists of colors; those of joints.
     static void ClearColors(uint32_t bodies, ConstraintColoring& coloring);
-    // before: its previous KeyOf.
-    static void AttachPair(const ColliderStore& colliders, PairStore& pairs, ConstraintColoring& coloring,
-                           uint32_t index, uint64_t before);
+    // areBodiesSame: result of AttachPieces; before: the pair's previous PlaceOf.
+    static void AttachPair(const ColliderStore& colliders, bool areBodiesSame, PairStore& pairs,
+                           ConstraintColoring& coloring, uint32_t index, const PairPlace& before);
     static void ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
                           const ConstraintColoring::Entry& entry, const ColorSlot& place);
 
 private:
-    // The key of a pair in the hash table; kNoKey if it is not there.
-    static constexpr uint64_t kNoKey = ~uint64_t{0};
-    static uint64_t KeyOf(const PairStore& pairs, uint32_t index) {
-        const Pair& pair = pairs.pairs[index];
-        return pair.exists && !pair.isMore ? pairs.KeyOf(index) : kNoKey;
+    static PairPlace PlaceOf(const Pair& pair) {
+        if (!pair.exists || pair.isMore) return {};
+        return {PairStore::Key(pair.colliderA, pair.colliderB), pair.colliderA};
     }
 };
 
@@ -93,11 +100,13 @@ void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
     auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
            targetCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] = bodies;
     s.Begin(SnapshotSection::Bodies);
+    InLoop<Stream> stream = s;
     for (uint32_t i = 0; i < cold.size(); ++i) {
-        s.Reserve(kMostOfBody);
-        VisitBody(s, bodies, i);
-        EndElement(s, i);
+        stream.Reserve(kMostOfBody);
+        VisitBody(stream, bodies, i);
+        EndElement(stream, i);
     }
+    if constexpr (!Stream::kWrites) s = stream;
     s.EndBlock();
     s.Begin(SnapshotSection::BodyLists);
     s.Reserve(64);
@@ -115,11 +124,13 @@ void SnapshotAccess::VisitColliders(Stream& s, Colliders& store) {
     auto& [colliders, shapes, boundsOrigin, staticTree, movingTree, sensorTree, movingLayers, staticLayers, moved,
            movedHasEmpty, runs, free, freeRuns] = store;
     s.Begin(SnapshotSection::Colliders);
+    InLoop<Stream> stream = s;
     for (uint32_t i = 0; i < colliders.size(); ++i) {
-        s.Reserve(kMostOfCollider);
-        VisitCollider(s, colliders[i], !shapes[i].shape);
-        EndElement(s, i);
+        stream.Reserve(kMostOfCollider);
+        VisitCollider(stream, colliders[i], !shapes[i].shape);
+        EndElement(stream, i);
     }
+    if constexpr (!Stream::kWrites) s = stream;
     s.EndBlock();
     s.Begin(SnapshotSection::ColliderLists);
     s.Reserve(64);
@@ -137,45 +148,48 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
            keepsReported] = store;
     s.Begin(SnapshotSection::Pairs);
     const auto count = static_cast<uint32_t>(pairs.size());
+    InLoop<Stream> stream = s;
     for (uint32_t i = 0; i < count; ++i) {
+        // References once: bytes that are read may alias the arrays' own members.
+        auto& pair = pairs[i];
+        auto& link = links[i];
+        auto& load = loads[i];
         constexpr uint32_t kAhead = 12;  // prefetch distance
-        if (i + kAhead < count) {
-            __builtin_prefetch(&pairs[i + kAhead]);
-            if (pairs[i].contact != PairStore::kNone) {
-                __builtin_prefetch(&contacts[pairs[i].contact] + kAhead);
-                __builtin_prefetch(&records[pairs[i].contact] + kAhead);
-            }
+        if (i + kAhead < count) __builtin_prefetch(&pair + kAhead);
+        if (Stream::kWrites && pair.contact != PairStore::kNone) {
+            __builtin_prefetch(&contacts[pair.contact] + kAhead);
+            __builtin_prefetch(&records[pair.contact] + kAhead);
         }
-        s.Reserve(kMostOfPair);
-        const uint64_t before = Stream::kWrites ? kNoKey : KeyOf(store, i);
-        bool isActive = active.Contains(i), hasContact = pairs[i].contact != PairStore::kNone;
+        stream.Reserve(kMostOfPair);
+        const PairPlace before = Stream::kWrites ? PairPlace{} : PlaceOf(pair);
+        bool isActive = active.Contains(i), hasContact = pair.contact != PairStore::kNone;
         uint32_t more = Stream::kWrites ? store.MoreOf(i) : PairStore::kNone;
-        if (VisitPair(s, pairs[i], isActive, hasContact, more)) {
-            auto& [next, previous] = links[i];
-            if (!pairs[i].isMore) s(next, previous);
-            VisitLoad(s, loads[i]);
-            if constexpr (!Stream::kWrites)
-                if (hasContact) {
-                    store.AddContact(i);
-                    contacts[pairs[i].contact].more = more;
-                }
+        if (VisitPair(stream, pair, isActive, hasContact, more)) {
+            auto& [next, previous] = link;
+            if (!pair.isMore) stream(next, previous);
+            VisitLoad(stream, load);
             if (hasContact) {
-                const uint32_t contact = pairs[i].contact;
-                VisitContact(s, contacts[contact], pairs[i].pointCount);
-                VisitRecord(s, records[contact], pairs[i].pointCount);
-                if (keepsListenersData && pairs[i].pointCount > 0 &&
-                    records[contact].Has(ContactRecord::kSurfaceVelocity))
-                    VisitSurfaceVelocity(s, surfaceVelocities[contact]);
-                if (keepsListenersData && records[contact].Has(ContactRecord::kMassOverride))
-                    VisitMassOverride(s, massOverrides[contact]);
+                if constexpr (!Stream::kWrites) {
+                    store.AddContact(i);
+                    contacts[pair.contact].more = more;
+                }
+                auto& contact = contacts[pair.contact];
+                auto& record = records[pair.contact];
+                VisitContact(stream, contact, pair.pointCount);
+                VisitRecord(stream, record, pair.pointCount);
+                if (keepsListenersData && pair.pointCount > 0 && record.Has(ContactRecord::kSurfaceVelocity))
+                    VisitSurfaceVelocity(stream, surfaceVelocities[pair.contact]);
+                if (keepsListenersData && record.Has(ContactRecord::kMassOverride))
+                    VisitMassOverride(stream, massOverrides[pair.contact]);
             }
-            if (keepsReported) VisitReported(s, reported[i]);
+            if (keepsReported) VisitReported(stream, reported[i]);
             if constexpr (!Stream::kWrites)
                 if (isActive) active.Insert(i);
         }
         attach(i, before);
-        EndElement(s, i);
+        EndElement(stream, i);
     }
+    if constexpr (!Stream::kWrites) s = stream;
     s.EndBlock();
     s.Begin(SnapshotSection::PairLists);
     s.Reserve(64);
@@ -257,7 +271,7 @@ void SnapshotAccess::VisitSensors(Stream& s, Sensors& store, Changed& itsChanged
 template <class Stream, class World, class Step>
 void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts) {
     auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, itsPairs, joints, coloring, sleeping,
-           sensors, removed, number, lock, outsideFatBounds] = world;
+           sensors, removed, number, lock, outsideFatBounds, seenPoses] = world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events, errors] = step;
     auto& [deepOverlaps, dispersing, crowded] = crowd;

@@ -27,7 +27,7 @@ static_assert(sizeof(BodyId) == 8 && sizeof(JointId) == 8 && sizeof(ColliderRun)
 
 // Bit fields, which cannot be bound by reference.
 template <class Stream, class... Bits>
-uint8_t VisitBits(Stream& s, Bits... bits) {
+FULCRUM_INLINE_IN_LOOP uint8_t VisitBits(Stream& s, Bits... bits) {
     uint8_t all = 0;
     if constexpr (Stream::kWrites) {
         int place = 0;
@@ -76,7 +76,7 @@ void VisitMassOverride(Stream& s, Override& massOverride) {
 }
 
 template <class Stream, class Load>
-void VisitLoad(Stream& s, Load& load) {
+FULCRUM_INLINE_IN_LOOP void VisitLoad(Stream& s, Load& load) {
     auto& [level, recent, steps, stiffness] = load;
     s(level, recent, steps, stiffness);
 }
@@ -94,7 +94,7 @@ inline constexpr size_t kMostOfBody = 512;
 
 // Except the group's filter.
 template <class Stream, class Filter>
-void VisitFilter(Stream& s, Filter& filter) {
+FULCRUM_INLINE_IN_LOOP void VisitFilter(Stream& s, Filter& filter) {
     auto& [category, mask, group] = filter;
     s(category, mask, group.group, group.subGroup);
     if constexpr (!Stream::kWrites) group.filter = nullptr;
@@ -102,14 +102,14 @@ void VisitFilter(Stream& s, Filter& filter) {
 
 // Except the compound.
 template <class Stream, class Children>
-void VisitChildren(Stream& s, Children& children) {
+FULCRUM_INLINE_IN_LOOP void VisitChildren(Stream& s, Children& children) {
     auto& [compound, origin, massUnit, moreColliders] = children;
     s(origin, massUnit, moreColliders);
 }
 
 // Members that few bodies use. isOdd: whether this one uses any.
 template <class Stream, class Cold>
-void VisitOddities(Stream& s, Cold& body, bool isOdd) {
+FULCRUM_INLINE_IN_LOOP void VisitOddities(Stream& s, Cold& body, bool isOdd) {
     if constexpr (!Stream::kWrites) {
         body.singleMove = SingleMove::None;
         body.lastPush = {};
@@ -136,7 +136,7 @@ void VisitOddities(Stream& s, Cold& body, bool isOdd) {
 // Of an index without a body only the generation matters. A body that was removed has its colliders until the next
 // step.
 template <class Stream, class Cold>
-bool VisitCold(Stream& s, Cold& body) {
+FULCRUM_INLINE_IN_LOOP bool VisitCold(Stream& s, Cold& body) {
     auto& [shape, userData, material, force, torque, penetrationTarget, filter, firstCollider, colliderCount, children,
            generation, awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, placed,
            isSteady, exists, removed, isSensor, isWorld, hasGravity] = body;
@@ -174,7 +174,7 @@ bool VisitCold(Stream& s, Cold& body) {
 
 // userData is a section of its own; the other members are derived.
 template <class Stream, class Bodies>
-void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
+FULCRUM_INLINE_IN_LOOP void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
     auto& state = bodies.states[i];
     auto& mass = bodies.masses[i];
     auto& pose = bodies.poses[i];
@@ -202,7 +202,7 @@ inline constexpr size_t kMostOfCollider = 64;
 
 // For an empty collider only its membership in a list matters. The child shape is derived from the body's shape.
 template <class Stream, class Collider>
-void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
+FULCRUM_INLINE_IN_LOOP void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
     auto& [fat, previous, body, moving, queued, sensor] = collider;
     const auto isSame = [](const Bounds& a, const Bounds& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
     bool isFat = false, isNone = false;
@@ -212,7 +212,9 @@ void VisitCollider(Stream& s, Collider& collider, bool isEmpty) {
     }
     const uint8_t bits = VisitBits(s, isEmpty, moving && !isEmpty, queued, sensor && !isEmpty, isFat, isNone);
     if constexpr (!Stream::kWrites) {
+        const uint32_t itsBody = body;  // AttachPieces compares it
         collider = {};
+        body = itsBody;
         isEmpty = bits & 1;
         queued = bits >> 2 & 1;
         if (isEmpty) return;
@@ -234,7 +236,7 @@ inline constexpr size_t kMostOfPair = 512;
 // Except bodies, which are derived from the colliders, and the contact; hasContact: whether there is one.
 // more: of surfaces, see PairContact. Returns false if there is no pair.
 template <class Stream, class Pair>
-bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact, uint32_t& more) {
+FULCRUM_INLINE_IN_LOOP bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact, uint32_t& more) {
     auto& [bodyA, bodyB, colliderA, colliderB, cache, contact, pointCount, exists, fixedB, offset, surface, touching,
            onSeam, isMore, material] = pair;
     auto& [kind, indexA, indexB, axis] = cache;
@@ -261,7 +263,7 @@ bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact, uint32_t
 
 // Except the indices of pairs; for a pair with this many points.
 template <class Stream, class Contact>
-void VisitContact(Stream& s, Contact& contact, uint32_t points) {
+FULCRUM_INLINE_IN_LOOP void VisitContact(Stream& s, Contact& contact, uint32_t points) {
     auto& [reference, features, color, triangle, pair, more] = contact;
     s(reference, triangle, color.color);
     if (color.color != ColorSlot{}.color) s(color.slot);
@@ -270,7 +272,7 @@ void VisitContact(Stream& s, Contact& contact, uint32_t points) {
 
 // For a pair with this many points.
 template <class Stream, class Record>
-void VisitRecord(Stream& s, Record& record, uint32_t points) {
+FULCRUM_INLINE_IN_LOOP void VisitRecord(Stream& s, Record& record, uint32_t points) {
     auto& [normal, pointCount, friction, restitution, twistRadius, marks, impulse, frictionImpulse, twistImpulse, all] =
         record;
     s(friction, restitution, marks);
@@ -283,7 +285,7 @@ void VisitRecord(Stream& s, Record& record, uint32_t points) {
 }
 
 template <class Stream, class Velocity>
-void VisitSurfaceVelocity(Stream& s, Velocity& velocity) {
+FULCRUM_INLINE_IN_LOOP void VisitSurfaceVelocity(Stream& s, Velocity& velocity) {
     auto& [linear, angular] = velocity;
     s(linear, angular);
 }

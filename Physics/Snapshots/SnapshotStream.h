@@ -212,6 +212,12 @@ private:
     bool hasFailed_ = false;
 };
 
+// The stream for the loop over a large array: the reader is copied, and assigned back afterwards. The copy stays in
+// registers if all functions that read it are inlined; bytes that are read may alias the original.
+template <class Stream>
+using InLoop = std::conditional_t<Stream::kWrites, Stream&, Stream>;
+#define FULCRUM_INLINE_IN_LOOP __attribute__((always_inline)) inline
+
 // Array elements per block: unchanged blocks cost almost nothing in deltas.
 inline constexpr uint32_t kElementsPerBlock = 64;
 template <class Stream>

@@ -115,7 +115,7 @@ MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepStat
     WriteJointTypes(s, world.joints, room.settings);
     SnapshotAccess::VisitBodies(s, world.bodies);
     SnapshotAccess::VisitColliders(s, world.colliders);
-    SnapshotAccess::VisitPairs(s, world.pairs, [](uint32_t, uint64_t) {});
+    SnapshotAccess::VisitPairs(s, world.pairs, [](uint32_t, const auto&) {});
     SnapshotAccess::VisitJoints(s, world.joints);
     SnapshotAccess::VisitSleeping(s, world.sleeping);
     room.changed = world.sensors.changed;

@@ -67,20 +67,29 @@ void LookAtBody(const CollisionView& view, const ConstraintColoring& coloring, S
     sweeps.searchBy[body] = stays && !turns ? SearchBy::Pairs : SearchBy::Trees;
 }
 
+// Makes the casts find a collider by larger fat bounds. Its tree is updated at the end (EndContinuous).
+void Enlarge(ColliderStore& colliders, SweepStore& sweeps, uint32_t collider, const Bounds& bounds) {
+    colliders.Queue(collider);
+    Collider& c = colliders.colliders[collider];
+    c.fat.Include(bounds);
+    if (sweeps.enlargedTree.Contains(collider)) return sweeps.enlargedTree.Update(collider, c.fat);
+    sweeps.enlarged.push_back(collider);
+    if (!c.sensor) sweeps.enlargedTree.Insert(collider, c.fat);
+}
+
 // Colliders that the solver moved out of their fat bounds get bounds that contain the whole path, so that tree searches
 // find them.
-void EnlargeBounds(const BodyStore& bodies, ColliderStore& colliders, std::span<WorkerFindings> workers) {
+void EnlargeBounds(const BodyStore& bodies, ColliderStore& colliders, SweepStore& sweeps,
+                   std::span<WorkerFindings> workers) {
     Array<uint32_t>& moved = colliders.moved;
     const size_t first = moved.size();
     for (WorkerFindings& findings : workers) {
-        for (uint32_t collider : findings.outsideFatBounds) {
-            colliders.Queue(collider);
-            Collider& c = colliders.colliders[collider];
-            c.fat.Include(TightBoundsOf(bodies, colliders, collider));
-            colliders.TreeOf(c).Update(collider, c.fat);
-        }
+        for (const uint32_t collider : findings.outsideFatBounds)
+            Enlarge(colliders, sweeps, collider, TightBoundsOf(bodies, colliders, collider));
         findings.outsideFatBounds.clear();
     }
+    constexpr uint32_t kFew = 8;  // in any order
+    if (sweeps.enlargedTree.Size() > kFew) sweeps.enlargedTree.Rebuild();
     std::sort(moved.begin() + static_cast<ptrdiff_t>(first), moved.end());
 }
 
@@ -94,7 +103,7 @@ uint32_t FindFast(const CollisionView& view, const PairStore& pairs, const Const
         for (uint32_t k = range.begin; k < range.end; ++k)
             LookAtBody(view, coloring, sweeps, awake[k], workers.findings[range.worker]);
     });
-    EnlargeBounds(view.bodies, colliders, workers.findings);
+    EnlargeBounds(view.bodies, colliders, sweeps, workers.findings);
     const size_t slow = static_cast<size_t>(std::count(sweeps.searchBy.begin(), sweeps.searchBy.end(), SearchBy::None));
     const size_t fast = sweeps.searchBy.size() - slow;
     // With few bodies, searching the trees is faster than going through all pairs.
@@ -153,6 +162,8 @@ void GatherHits(std::span<WorkerFindings> workers, Array<SweepHit>& hits) {
 void ReserveLists(const BodyStore& bodies, size_t colliders, SweepStore& sweeps, std::span<WorkerFindings> workers) {
     const size_t users = bodies.continuousCount;
     sweeps.searchBy.reserve(bodies.Size());
+    sweeps.enlarged.reserve(colliders);
+    sweeps.enlargedTree.Reserve(colliders);
     sweeps.places.resize(bodies.Size(), SweepStore::kNone);
     sweeps.swept.reserve(users);
     for (Array<SweepHit>* list : {&sweeps.hits, &sweeps.keptHits}) list->reserve(2 * users);
@@ -170,26 +181,24 @@ void StartSweeps(const StepContext& step, const BodyStore& bodies, SweepStore& s
             sweeps.active.push_back(PlaceOf(step, bodies, sweeps, body));
 }
 
-// Enlarges the bounds of bodies that a hit moved out of them, so that other casts find them.
-void EnlargeBounds(BodyStore& bodies, ColliderStore& colliders, const Sweep& sweep) {
-    const Pose end = sweep.PoseAt(1);
+// Enlarges the bounds of bodies that a hit moves out of them, so that other casts find them. Their poses are set at the
+// end: until then casts follow the sweep.
+void EnlargeBounds(const BodyStore& bodies, ColliderStore& colliders, SweepStore& sweeps, Sweep& sweep) {
+    Pose end = sweep.PoseAt(1);
     if (!bodies.CanMove(sweep.body) || !IsFinite(end.position) || !IsFinite(end.rotation)) return;
-    bodies.SetCenterPose(sweep.body, end);
+    sweep.moves = true;
+    end.position = OnGrid(end.position);
     VisitColliders(bodies, colliders, sweep.body, [&](uint32_t i) {
-        Collider& collider = colliders.colliders[i];
-        const Bounds tight = TightBoundsOf(bodies, colliders, i);
-        if (collider.fat.Contains(tight)) return;
-        colliders.Queue(i);
-        collider.fat.Include(tight);
-        colliders.TreeOf(collider).Update(i, collider.fat);
+        const Bounds tight = TightBoundsAt(end, bodies, colliders, i);
+        if (!colliders.colliders[i].fat.Contains(tight)) Enlarge(colliders, sweeps, i, tight);
     });
 }
 
 // Bodies whose sweeps were changed by hits or are undecided are cast in the next round.
-void EndRound(BodyStore& bodies, ColliderStore& colliders, SweepStore& sweeps) {
+void EndRound(const BodyStore& bodies, ColliderStore& colliders, SweepStore& sweeps) {
     for (uint32_t place : sweeps.next) {
         sweeps.swept[place].changed = false;
-        EnlargeBounds(bodies, colliders, sweeps.swept[place]);
+        EnlargeBounds(bodies, colliders, sweeps, sweeps.swept[place]);
     }
     std::sort(sweeps.next.begin(), sweeps.next.end());
     sweeps.active.swap(sweeps.next);
@@ -205,6 +214,8 @@ void Continuous(const StepContext& step, const PairStore& pairs, const SleepStor
     sweeps.swept.clear();
     sweeps.ended.clear();
     sweeps.endedAt.clear();
+    sweeps.enlarged.clear();
+    if (sweeps.enlargedTree.Size() > 0) sweeps.enlargedTree.Clear();
     if (bodies.continuousCount == 0) return;
     ReserveLists(bodies, colliders.colliders.capacity(), sweeps, workers.findings);
     const CollisionView view{step, bodies, colliders, stores.joints};
@@ -223,6 +234,15 @@ void Continuous(const StepContext& step, const PairStore& pairs, const SleepStor
         EndRound(bodies, colliders, sweeps);
     }
     for (const Sweep& sweep : sweeps.swept) sweeps.places[sweep.body] = SweepStore::kNone;
+}
+
+void EndContinuous(BodyStore& bodies, ColliderStore& colliders, const SweepStore& sweeps) {
+    for (const Sweep& sweep : sweeps.swept)
+        if (sweep.moves) bodies.SetCenterPose(sweep.body, sweep.PoseAt(1));
+    for (const uint32_t i : sweeps.enlarged) {
+        const Collider& collider = colliders.colliders[i];
+        colliders.TreeOf(collider).Update(i, collider.fat);
+    }
 }
 
 }  // namespace fulcrum

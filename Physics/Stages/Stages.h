@@ -84,10 +84,12 @@ void BreakJoints(const BodyStore& bodies, ColliderStore& colliders, JointStore& 
                  Array<BrokenJoint>& broken);
 
 // Reads the poses at the start of the step. Casts bodies with continuous collision that moved far along their paths,
-// and resolves hits: changes poses and velocities, wakes bodies. Writes the sweeps of the step, and bounds that contain
-// them.
+// and resolves hits: changes velocities, wakes bodies. Writes the sweeps of the step, and fat bounds that contain them.
+// Poses and trees, which queries read meanwhile, are changed by EndContinuous, which must follow.
 void Continuous(const StepContext& step, const PairStore& pairs, const SleepStores& stores, SweepStore& sweeps,
                 const StepWorkers& workers, StepReport& report);
+
+void EndContinuous(BodyStore& bodies, ColliderStore& colliders, const SweepStore& sweeps);
 
 // Finds the bodies that are inside sensors, entered or left them along the paths of the step. Writes the sensors, and
 // the bounds of their colliders.

@@ -36,7 +36,7 @@ void SettleStoppedIn(WorldState& world, const StepWorkers& workers) {
 }
 
 // The stages in the order in which they run, with their arguments. Queries of other threads are let in between the
-// first and the Store stage: what they read does not change there (WorldLock.h).
+// first and the Store stage, and in Continuous: what they read does not change there (WorldLock.h, SeenPoses.h).
 constexpr Stage kStages[] = {
     {"UpdateBounds",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
@@ -86,15 +86,25 @@ constexpr Stage kStages[] = {
     {"Store",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          StoreImpulses(step, world.bodies, state.solver, world.pairs, world.joints, workers);
+         const bool sweeps = world.bodies.continuousCount > 0;
+         if (sweeps) world.seenPoses.Note(world.bodies, workers.jobs);
          world.lock.KeepQueriesOut();
          state.sleepCandidates = MoveBodies(step, world.colliders, world.joints, world.coloring, state.crowd,
                                             world.bodies, state.sweeps, workers, state.report);
          BreakJoints(world.bodies, world.colliders, world.joints, world.coloring, state.events.broken);
          SettleStoppedIn(world, workers);
+         if (!sweeps) return;
+         world.seenPoses.Show();
+         world.lock.LetQueriesIn();
      }},
     {"Continuous",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          Continuous(step, world.pairs, world, state.sweeps, workers, state.report);
+         if (world.seenPoses.AreShown()) {
+             world.lock.KeepQueriesOut();
+             world.seenPoses.Hide();
+         }
+         EndContinuous(world.bodies, world.colliders, state.sweeps);
          if (step.settings.measuresErrors)
              EndErrors(step, world.bodies, world.joints, world.coloring, state.sweeps, state.errors,
                        state.report.errors);

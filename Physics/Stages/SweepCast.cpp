@@ -126,8 +126,12 @@ private:
         const auto visit = [&](uint32_t other) { CastAnew(other, straight); };
         const uint32_t layers = view_.step.settings.layerCollides[view_.bodies.dynamics[sweep_.body].layer];
         // Dispersing bodies do not collide with dynamic ones; visiting all overlaps would cost n^2.
-        if ((layers & view_.colliders.movingLayers) && !view_.bodies.dynamics[sweep_.body].dispersing)
-            view_.colliders.movingTree.CastRay(ray, limit_, visit);
+        if ((layers & view_.colliders.movingLayers) && !view_.bodies.dynamics[sweep_.body].dispersing) {
+            sweeps_.enlargedTree.CastRay(ray, limit_, visit);
+            view_.colliders.movingTree.CastRay(ray, limit_, [&](uint32_t other) {
+                if (!sweeps_.enlargedTree.Contains(other)) visit(other);
+            });
+        }
         if (layers & view_.colliders.staticLayers) view_.colliders.staticTree.CastRay(ray, limit_, visit);
     }
 

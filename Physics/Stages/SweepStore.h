@@ -2,6 +2,7 @@
 // if some body needs it. Written by Store and Continuous.
 #pragma once
 
+#include <Fulcrum/Collision/BroadPhase/BoundsTree.h>
 #include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Trigonometry.h>
@@ -28,6 +29,7 @@ struct Sweep {
     bool isCut = false;    // something was hit
     bool waits = false;    // stays at its pose at `from` until the end of the step, and keeps its velocity
     bool changed = false;  // changed in the current round
+    bool moves = false;    // its end is the body's new pose
     // Hits since the time of the first of them, of those that follow each other closely (CountHit).
     int crowdedHits = 0;
     float crowdedSince = 0;
@@ -113,18 +115,22 @@ struct SweepStore {
     Array<uint32_t> active, next;  // indices into `swept`, of this round and the next
     Array<SweepHit> hits;          // of a round; afterwards those postponed to the next
     Array<SweepHit> keptHits;      // temporary
-    bool reportsHits = false;      // whether contact events are on in this step
-    Array<ReportedHit> reported;   // hits that stopped or deflected a body in this step
+    // Colliders whose fat bounds the stage enlarged, and a tree of these bounds without sensors. The trees of the world
+    // are updated at its end, so that queries may read them meanwhile.
+    Array<uint32_t> enlarged;
+    BoundsTree enlargedTree;
+    bool reportsHits = false;     // whether contact events are on in this step
+    Array<ReportedHit> reported;  // hits that stopped or deflected a body in this step
 
     // Whether the body's start pose is that of this step: it was awake at its start.
     bool IsOfStep(uint32_t body, uint64_t step) const { return body < starts.size() && starts[body].step == step; }
 };
 
 inline size_t HeapBytes(const SweepStore& store) {
-    const auto& [isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits, reportsHits,
-                 reported] = store;
+    const auto& [isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits, enlarged,
+                 enlargedTree, reportsHits, reported] = store;
     return HeapBytes(isKept, dt, starts, searchBy, swept, places, ended, endedAt, active, next, hits, keptHits,
-                     reportsHits, reported);
+                     enlarged, enlargedTree, reportsHits, reported);
 }
 
 }  // namespace fulcrum

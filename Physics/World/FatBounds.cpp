@@ -32,8 +32,11 @@ Bounds TightBounds(const Shape& shape, const Pose& pose, const Matrix3& rotation
 }
 
 Bounds TightBoundsOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t index) {
+    return TightBoundsAt(bodies.CenterPoseOf(colliders.colliders[index].body), bodies, colliders, index);
+}
+
+Bounds TightBoundsAt(Pose body, const BodyStore& bodies, const ColliderStore& colliders, uint32_t index) {
     const ColliderShape& piece = colliders.shapes[index];
-    Pose body = bodies.CenterPoseOf(colliders.colliders[index].body);
     body.position -= colliders.boundsOrigin;
     const Pose pose = body * LocalOf(bodies, colliders, index);
     return TightBounds(*piece.shape, pose, ToMatrix(pose.rotation), Vector3::Zero());

@@ -10,6 +10,8 @@ namespace fulcrum {
 
 // Bounds of a collider at its body's current pose, without margin.
 Bounds TightBoundsOf(const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider);
+// The same if its body's center frame, on the grid, were `body`.
+Bounds TightBoundsAt(Pose body, const BodyStore& bodies, const ColliderStore& colliders, uint32_t collider);
 
 // Fat bounds of a collider at its body's pose, at rest.
 void SetFatBounds(const SystemSettings& settings, const BodyStore& bodies, ColliderStore& colliders, uint32_t collider);

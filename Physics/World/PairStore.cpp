@@ -86,7 +86,7 @@ uint32_t PairStore::AddContact(uint32_t pair) {
         if (keepsListenersData_) surfaceVelocities[index] = {};
     } else {
         index = static_cast<uint32_t>(contacts.size());
-        ReserveContacts(1);
+        if (index == std::min(contacts.capacity(), records.capacity())) ReserveContacts(1);
         contacts.emplace_back();
         records.emplace_back();
         if (keepsListenersData_) {

@@ -1,7 +1,7 @@
 // Reader-writer lock with two kinds of readers. Whoever changes or steps the world has exclusive access. During most of
-// a step, queries are let in: what they read, poses and trees, changes only in the first stage and the last ones, and
-// is the state of the last step in between. Other readers wait for the whole step. A reader that arrives while a writer
-// waits lets it go first, once, so that neither starves.
+// a step, queries are let in: what they read, poses and trees, changes only in the first stage, when bodies are moved,
+// and in the last ones, and is the state of the last step in between. Other readers wait for the whole step. A reader
+// that arrives while a writer waits lets it go first, once, so that neither starves.
 //
 // Access is recorded per thread: nested access of a kind that the thread already has takes no lock, and access that
 // would deadlock is refused. The world's memory is the current one of the thread meanwhile (Memory.h).

@@ -8,6 +8,7 @@
 #include <Fulcrum/Physics/World/CollidersOutsideFatBounds.h>
 #include <Fulcrum/Physics/World/JointStore.h>
 #include <Fulcrum/Physics/World/PairStore.h>
+#include <Fulcrum/Physics/World/SeenPoses.h>
 #include <Fulcrum/Physics/World/SensorStore.h>
 #include <Fulcrum/Physics/World/SleepingIslands.h>
 #include <Fulcrum/Physics/World/WorldLock.h>
@@ -44,6 +45,7 @@ struct WorldState {
     // Lock for queries.
     WorldLock lock;
     CollidersOutsideFatBounds outsideFatBounds;
+    SeenPoses seenPoses;
 };
 
 size_t HeapBytes(const WorldState& world);

@@ -7,8 +7,9 @@
 
 namespace fulcrum {
 
-// Of every shape but compounds, which become one of no children. Curved shapes other than spheres and capsules become
-// meshes, planes a square of 200 m, surfaces their triangles with their materials as looks.
+// Of every shape but compounds, which become one of no children. Spheres, capsules and boxes stay what they are; others
+// become the triangles of the drawing interface (VisitTriangles), planes a square of 200 m, surfaces with their
+// materials as looks.
 RecordedShape RecordedShapeOf(const Shape& shape);
 
 RecordedMotion RecordedMotionOf(MotionType motion);

@@ -4,6 +4,7 @@
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstring>
 #include <future>
@@ -102,8 +103,8 @@ Seen Look(Heap& heap, std::span<const BodyId> ids) {
     return seen;
 }
 
-// In each stage between the first and Store, another thread looks, and the step waits for it: if the step kept queries
-// out, nobody would return.
+// In each stage between the first and Store, and in Continuous, another thread looks, and the step waits for it: if the
+// step kept queries out, nobody would return.
 TEST(WorldThreads, QueriesDuringAStepSeeTheStateOfTheLastOne) {
     struct Observer : StepObserver {
         Heap& heap;
@@ -112,7 +113,8 @@ TEST(WorldThreads, QueriesDuringAStepSeeTheStateOfTheLastOne) {
         explicit Observer(Heap& h) : heap(h) {}
         void BeginStage(int, const char* name) override {
             const std::string stage = name;
-            for (const char* inside : {"FindPairs", "Collide", "Color", "BuildIslands", "Prepare", "Solve", "Store"}) {
+            for (const char* inside :
+                 {"FindPairs", "Collide", "Color", "BuildIslands", "Prepare", "Solve", "Store", "Continuous"}) {
                 if (stage != inside) continue;
                 const Seen now = std::async(std::launch::async, [this] { return Look(heap, heap.ids); }).get();
                 EXPECT_TRUE(now == before) << stage;
@@ -128,8 +130,51 @@ TEST(WorldThreads, QueriesDuringAStepSeeTheStateOfTheLastOne) {
             observer.before = Look(heap, heap.ids);
             heap.world.Step();
         }
-        EXPECT_EQ(observer.looked, 25 * 7);
+        EXPECT_EQ(observer.looked, 25 * 8);
         heap.world.System().SetStepObserver(nullptr);
+    });
+}
+
+// In the middle of continuous collision, when some hits have been resolved, and bodies that slept are hit. What the
+// step itself calls back sees the poses to which the bodies have moved.
+TEST(WorldThreads, QueriesDuringContinuousCollisionSeeTheStateOfTheLastStep) {
+    struct Observer : StepObserver, ContactListener {
+        Heap& heap;
+        Seen before;
+        bool isContinuous = false;
+        mutable int looked = 0, moved = 0;
+        explicit Observer(Heap& h) : heap(h) {}
+        void BeginStage(int, const char* name) override { isContinuous = std::string(name) == "Continuous"; }
+        void ModifyContact(const ContactView& contact, ContactChange&) const override {
+            if (!isContinuous) return;
+            const Seen now = std::async(std::launch::async, [this] { return Look(heap, heap.ids); }).get();
+            EXPECT_TRUE(now == before);
+            const Pose own = heap.world.Bodies().GetPose(contact.bodyA);
+            const auto at = std::ranges::find(heap.ids, contact.bodyA) - heap.ids.begin();
+            if (at < std::ssize(heap.ids)) moved += !(own.position == before.poses[static_cast<size_t>(at)].position);
+            ++looked;
+        }
+    };
+    Within(kDeadline, [] {
+        Heap heap(1, 60);
+        Observer observer(heap);
+        PhysicsSystem& system = heap.world.System();
+        system.SetContactListener(&observer);
+        system.SetStepObserver(&observer);
+        RandomPoses random(5);
+        for (int step = 0; step < 40; ++step) {
+            // Bullets, also into those that sleep.
+            for (size_t i = 0; step % 4 == 0 && i < heap.ids.size(); i += 8) {
+                const Vector3 velocity = random.InBox(120);
+                EXPECT_TRUE(system.Bodies().SetVelocity(heap.ids[i], velocity, {}));
+            }
+            observer.before = Look(heap, heap.ids);
+            heap.world.Step();
+        }
+        EXPECT_GT(observer.looked, 40);
+        EXPECT_GT(observer.moved, 20);
+        system.SetStepObserver(nullptr);
+        system.SetContactListener(nullptr);
     });
 }
 

@@ -177,6 +177,39 @@ TEST(Snapshot, IdsOfThenAreValidAgainAndLaterOnesAreNot) {
     EXPECT_EQ(world.Add({.shape = SphereOf(0.5f), .position = {3, 2, 0}}), later);
 }
 
+// The same two colliders have a pair in both worlds, but the body that moves is the other one; or the bodies are the
+// same, and one has another shape.
+TEST(Snapshot, GoesToAWorldWhosePairsAreOfOtherBodiesOrShapes) {
+    const ShapePtr cube = CubeOf(0.5f), ball = SphereOf(0.5f);
+    const auto fill = [](TestWorld& world, const ShapePtr& lower, const ShapePtr& upper, bool firstIsUpper) {
+        const auto add = [&](bool isUpper) {
+            world.Add({.shape = isUpper ? upper : lower,
+                       .motion = isUpper ? MotionType::Dynamic : MotionType::Static,
+                       .position = {0.1, isUpper ? 1.05 : 0, 0}});
+        };
+        add(firstIsUpper);
+        add(!firstIsUpper);
+        world.Steps(5);
+    };
+    TestWorld world;
+    fill(world, cube, cube, true);
+    const Bytes saved = SnapshotOf(world.System());
+    world.Steps(20);
+    struct Other {
+        ShapePtr lower, upper;
+        bool firstIsUpper;
+    };
+    for (const auto& [lower, upper, firstIsUpper] :
+         {Other{cube, cube, false}, {ball, cube, true}, {cube, ball, true}}) {
+        TestWorld other;
+        fill(other, lower, upper, firstIsUpper);
+        Restore(other.System(), saved, {.shapes = {&cube, 1}});
+        EXPECT_EQ(SnapshotOf(other.System()), saved);
+        other.Steps(20);
+        EXPECT_EQ(other.System().HashState(), world.System().HashState());
+    }
+}
+
 TEST(Snapshot, GoesBackBeforeSettingsWereChanged) {
     TestWorld world;
     const BodyId body = world.Add({.shape = CubeOf(0.5f)});
