@@ -79,5 +79,8 @@ export class Live {
   isAwake(body) { return this.awake[body] === 1; }
   island(body) { return this.islands[body]; }
   velocity(body) { return this.velocities.subarray(3 * body, 3 * body + 3); }
-  speed(body) { return Math.hypot(this.velocities[3 * body], this.velocities[3 * body + 1], this.velocities[3 * body + 2]); }
+  speed(body) {
+    const { velocities } = this, at = 3 * body;
+    return Math.sqrt(velocities[at] ** 2 + velocities[at + 1] ** 2 + velocities[at + 2] ** 2);
+  }
 }
