@@ -60,6 +60,17 @@ function teapot() {
   ];
 }
 
+// A profile that crosses itself would turn into a surface without an inside.
+function requireSimple(profile) {
+  const side = ([ax, ay], [bx, by], [x, y]) => Math.sign((bx - ax) * (y - ay) - (by - ay) * (x - ax));
+  for (let i = 0; i + 1 < profile.length; ++i) {
+    for (let k = i + 2; k + 1 < profile.length; ++k) {
+      const [a, b, c, d] = [profile[i], profile[i + 1], profile[k], profile[k + 1]];
+      if (side(a, b, c) !== side(a, b, d) && side(c, d, a) !== side(c, d, b)) throw new Error(`the profile crosses itself between points ${i} and ${k}`);
+    }
+  }
+}
+
 // A fountain of three basins, one surface: hollow, so it is for --onto.
 function fountain() {
   const wall = 0.15, profile = [[0, 0], [4.9, 0], [5, 0.2], [5, 1]];
@@ -67,10 +78,11 @@ function fountain() {
     profile.push([radius - wall, rim], [radius - 2 * wall, rim - 0.45], [next + 0.15, rim - 0.55]);
     if (next > 0.3) {
       const [wide, top] = next === 0.5 ? [2.9, 2.6] : [1.5, 3.8];
-      profile.push([next, rim + 0.25], [next, top - 0.75], [wide - 0.7, top - 0.6], [wide, top - 0.15], [wide, top]);
+      profile.push([next, rim + 0.25], [next, top - 0.75], [wide - 0.25, top - 0.6], [wide, top - 0.2], [wide, top]);
     }
   }
   profile.push([0.14, 4.1], [0, 4.25]);
+  requireSimple(profile);
   const corners = 48, vertices = [[0, profile[0][1], 0]], faces = [];
   const ringAt = (k, i) => 1 + (k - 1) * corners + (i % corners);
   for (const [radius, height] of profile.slice(1, -1)) {

@@ -59,6 +59,13 @@ void Recorder::AfterStep() {
     if (step % interval_ == 0 || step == steps_) AddFrame();
 }
 
+const RecordedFrame& Recorder::Now() {
+    isLive_ = true;
+    recording.frames.clear();
+    AddFrame();
+    return recording.frames.back();
+}
+
 uint32_t Recorder::RecordShape(const ShapePtr& shape, BodyId user) {
     const uint64_t fingerprint = FingerprintOf(*shape);
     const auto known = shapes_.find(shape.get());
@@ -163,9 +170,9 @@ void Recorder::AddFrame() {
                            .island = islands_[body]});
     }
     contacts_.clear();
-    if (WantsContacts(recording)) CollectContacts();
+    if (!isLive_ && WantsContacts(recording)) CollectContacts();
     CollectDrawing();
-    CollectFigures();
+    if (!isLive_) CollectFigures();
     AppendFrame(recording, world_.Time(), states_, contacts_, joints_->Collect(recording.joints), {lines_, points_},
                 shapeChanges_, figures_);
     figures_ = {};

@@ -25,6 +25,10 @@ public:
     // After every step.
     void AfterStep();
 
+    // In its place, to draw a world while it runs: the world as it is now. It is the recording's only frame, without
+    // contacts and figures, and valid until the next call.
+    const RecordedFrame& Now();
+
     // The body that a recorded one is, or whose child.
     BodyId IdOf(uint32_t recorded) const { return ids_[recorded]; }
 
@@ -83,6 +87,7 @@ private:
     std::vector<RecordedPoint> points_;
     std::vector<RecordedShapeChange> shapeChanges_;
     std::optional<JointRecorder> joints_;
+    bool isLive_ = false;      // frames are made by Now
     RecordedFigures figures_;  // of the steps since the last frame
     int stepsOfFigures_ = 0;
 };

@@ -1,6 +1,7 @@
 #include <Fulcrum/Samples/Scenes/PenetrationMeter.h>
 
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
+#include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
@@ -45,8 +46,7 @@ public:
             VisitPieces(b, BoundsAt(inB, piece.shape.LocalBounds()), [&](const Piece& other) {
                 Consider(piece.shape, other, Inverse(inB) * other.pose);
                 if (other.triangle && !other.isTwoSided)
-                    BehindTriangle(piece.shape, inB,
-                                   static_cast<const SurfaceShape&>(b).GetTriangle(other.subShape.triangle));
+                    BehindTriangle(piece.shape, inB, static_cast<const SurfaceShape&>(b), other.subShape.triangle);
             });
         });
     }
@@ -72,9 +72,17 @@ private:
         const ConvexSeparation found = MeasureConvex(a, b, bInA, 0);
         if (!found.isBeyond) Note(-found.separation, inner);
     }
-    void BehindTriangle(const ConvexShape& a, const RelativePose& inB, const TriangleView& triangle) {
+    // Behind a wall's far side is also what is in front of its near side: the nearest triangle tells which.
+    void BehindTriangle(const ConvexShape& a, const RelativePose& inB, const SurfaceShape& surface, uint32_t id) {
+        const TriangleView triangle = surface.GetTriangle(id);
         if (!IsBehind(triangle, inB.position)) return;
-        Note(Dot(triangle.normal, Vector3(triangle.vertices[0] - Lowest(a, inB, triangle.normal))), a.InnerRadius());
+        const float depth = Dot(triangle.normal, Vector3(triangle.vertices[0] - Lowest(a, inB, triangle.normal)));
+        if (depth <= static_cast<float>(relative_) * a.InnerRadius()) return;
+        const float distance = Dot(triangle.normal, Vector3(triangle.vertices[0] - inB.position));
+        const float margin = RoundingOfDistances(distance + surface.OuterRadius());
+        ClosestPoints nearest;
+        if (FindClosestPoint(surface, inB.position, distance, nearest) && nearest.distance < distance - margin) return;
+        Note(depth, a.InnerRadius());
     }
 
     double relative_, depth_ = 0;

@@ -3,8 +3,8 @@
 //
 // The measure is the penetration depth of two bodies, over the inner radius of the smaller one (of the largest ball
 // that fits inside). 1 means that a ball inside one body has its center on the other's surface; beyond that it is
-// ambiguous on which side the body belongs. For a body whose center is behind a mesh or height field the depth is how
-// far it must rise.
+// ambiguous on which side the body belongs. For a body whose center is behind the nearest triangle of a mesh or
+// height field the depth is how far it must go along that triangle's normal.
 #pragma once
 
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>

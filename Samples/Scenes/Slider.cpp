@@ -39,7 +39,7 @@ void Build(SceneWorld& world) {
 
     const BodyId weight = world.Add({.shape = world.SphereOf(0.3f), .position = {5, 3, 0}, .mass = 10});
     auto bouncing = JointOf<SliderJointSettings>(AddHook(world, {5, 3.5, 0}), weight, {5, 3, 0}, {0, 1, 0});
-    bouncing.slide = Limited(-1, 5, 1.5f, 0.1f);
+    bouncing.slide = Limited(-1, 1, 1.5f, 0.1f);
     world.joints.push_back(world.Join(bouncing));
 }
 

@@ -201,6 +201,41 @@ TEST(PassThrough, TheMeterMeasuresOverlapsWithoutContacts) {
     EXPECT_NEAR(meter.Worst().relative, 0.5, 1e-3);
 }
 
+// A closed slab has a far side, which whatever lies on it is behind.
+TEST(PassThrough, TheMeterTellsTheNearSideOfAMeshFromTheFarSide) {
+    static float thickness;
+    static Scene scene{.name = "slab", .description = ""};
+    scene.adjust = [](SystemSettings& settings) { settings.gravity.setZero(); };
+    scene.build = [](SceneWorld& world) {
+        std::vector<Vector3> corners;
+        for (const float y : {-thickness, 0.0f})
+            for (const auto& [x, z] : {std::pair{-2.0f, -2.0f}, {2.0f, -2.0f}, {2.0f, 2.0f}, {-2.0f, 2.0f}})
+                corners.push_back({x, y, z});
+        std::vector<uint32_t> indices = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6};
+        for (const uint32_t i : {0u, 1u, 2u, 3u}) {
+            const uint32_t j = (i + 1) % 4;
+            indices.insert(indices.end(), {i, 4 + i, j, j, 4 + i, 4 + j});
+        }
+        world.Add({.shape = world.MeshOf(corners, indices), .motion = MotionType::Static});
+        world.Add({.shape = world.SphereOf(0.5f), .position = {0.3, 2, 0.1}});
+    };
+    const auto depthAt = [&](float slab, double height) {
+        thickness = slab;
+        Result<std::unique_ptr<SceneWorld>> world = SceneWorld::Create(scene);
+        if (!world) return -1.0;
+        PenetrationMeter meter(*world.Value());
+        BodyId ball;
+        world.Value()->System().VisitBodies([&](BodyId id) { ball = id; });
+        EXPECT_TRUE(world.Value()->Bodies().SetPose(ball, {0.3, height, 0.1}, {}));
+        meter.Measure();
+        return meter.Worst().depth;
+    };
+    EXPECT_NEAR(depthAt(0.005f, 0.49), 0.01, 1e-4);  // lies on it
+    EXPECT_NEAR(depthAt(1, 0.49), 0.01, 1e-4);
+    EXPECT_NEAR(depthAt(1, -0.2), 0.7, 1e-4);     // in it, to rise by 0.7
+    EXPECT_NEAR(depthAt(0.5f, -0.3), 0.7, 1e-4);  // nearer to the far side
+}
+
 // A soft row yields in proportion to its load: by D, extrapolated from a small load. Beyond a depth d, a quarter of the
 // inner radius, it is stiffer: it yields by c = 1 - (x / d - 1) of that at a depth x, so that x = c D, or x = 2 D / (1
 // + D / d).

@@ -10,8 +10,16 @@ namespace fulcrum::web {
 static_assert(sizeof(RecordedState) == 56 && offsetof(RecordedState, position) == 4 &&
                   offsetof(RecordedState, rotation) == 16 && offsetof(RecordedState, velocity) == 32 &&
                   offsetof(RecordedState, awake) == 44 && offsetof(RecordedState, island) == 48 &&
-                  offsetof(RecordedState, isThere) == 52,
+                  offsetof(RecordedState, isThere) == 52 && sizeof(RecordedJointState) == 56 &&
+                  offsetof(RecordedJointState, enabled) == 4 && offsetof(RecordedJointState, limits) == 8 &&
+                  sizeof(RecordedLine) == 28 && offsetof(RecordedLine, color) == 24 && sizeof(RecordedPoint) == 16 &&
+                  offsetof(RecordedPoint, color) == 12,
               "Page/live.js reads these");
+
+template <class T>
+double AddressOf(const std::vector<T>& items) {
+    return static_cast<double>(std::bit_cast<uintptr_t>(items.data()));
+}
 
 // Begins anew to record the world as it is: also after a body came, whose shape the page must draw.
 FULCRUM_FOR_JAVASCRIPT int fulcrum_show(World* world) {
@@ -22,19 +30,23 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_show(World* world) {
 }
 
 // After each step. The number of bodies that are drawn; the numbers are the address of their RecordedStates, whether
-// what is drawn has changed, so that it must be shown anew, and the origin.
+// what is drawn has changed, so that it must be shown anew, the origin, and address and count of the states of joints
+// that changed (RecordedJointState), of the scene's lines and of its points.
 FULCRUM_FOR_JAVASCRIPT uint32_t fulcrum_readShown(World* world) {
-    Recorder& recorder = *world->recorder;
-    Recording& recording = recorder.recording;
-    const size_t shapes = recording.shapes.size(), bodies = recording.bodies.size();
-    recorder.AfterStep();
-    // Only the latest state is of use.
-    recording.frames.clear();
-    recording.contactCount = 0;
+    Recording& recording = world->recorder->recording;
+    const size_t shapes = recording.shapes.size(), bodies = recording.bodies.size(), joints = recording.joints.size();
+    const RecordedFrame& now = world->recorder->Now();
     double* numbers = Shared().numbers.data();
-    numbers[0] = static_cast<double>(std::bit_cast<uintptr_t>(recording.latest.data()));
-    numbers[1] = recording.shapes.size() != shapes || recording.bodies.size() != bodies;
+    numbers[0] = AddressOf(recording.latest);
+    numbers[1] =
+        recording.shapes.size() != shapes || recording.bodies.size() != bodies || recording.joints.size() != joints;
     for (int k = 0; k < 3; ++k) numbers[2 + k] = recording.origin[k];
+    numbers[5] = AddressOf(now.joints);
+    numbers[6] = static_cast<double>(now.joints.size());
+    numbers[7] = AddressOf(now.lines);
+    numbers[8] = static_cast<double>(now.lines.size());
+    numbers[9] = AddressOf(now.points);
+    numbers[10] = static_cast<double>(now.points.size());
     return static_cast<uint32_t>(bodies);
 }
 

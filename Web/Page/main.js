@@ -2,8 +2,12 @@
 // #scene=drum&paused=1&threads=2&theme=dark. Scripts and tests use window.fulcrum, which is there once a scene is shown.
 import { Bodies } from '../../Samples/Viewer/Page/bodies.js';
 import { MODES, legend, setTheme } from '../../Samples/Viewer/Page/colors.js';
+import { Drawings } from '../../Samples/Viewer/Page/drawings.js';
+import { Joints, MOST_WITH_LIMITS, jointLegend } from '../../Samples/Viewer/Page/joints.js';
+import { Labels } from '../../Samples/Viewer/Page/labels.js';
 import { Stage } from '../../Samples/Viewer/Page/stage.js';
 import { findSubject, groundHeight, isEnclosed } from '../../Samples/Viewer/Page/subject.js';
+import { addWater } from '../../Samples/Viewer/Page/water.js';
 import { Effort } from './effort.js';
 import { loadEngine } from './engine.js';
 import { Hand } from './hand.js';
@@ -56,18 +60,27 @@ class Page {
       for (const object of this.drawn) {
         object.removeFromParent();
         object.geometry?.dispose();
+        object.material?.map?.dispose();
       }
     } else {
       this.#newStage(findSubject(recording, this.live));
       const ground = groundHeight(recording, this.live, this.stage.subject);
       if (ground !== undefined) this.stage.addGround(ground);
+      if (recording.view?.water) addWater(this.stage, recording.view.water);
       this.isSolid = !isEnclosed(recording, this.live, this.stage.subject);
     }
     const { scene } = this.stage, before = scene.children.length;
     this.bodies = new Bodies(recording, this.live, this.stage);
+    this.joints = new Joints(recording, this.live, this.stage);
+    this.labels = new Labels(recording, this.live, this.stage);
+    this.drawings = new Drawings(recording, this.stage);
     this.drawn = scene.children.slice(before);
     this.bodies.theme = this.theme;
     this.bodies.setSolid(this.isSolid);
+    if (!keepsStage) {
+      this.shown = { joints: recording.view?.joints !== false && recording.joints.length <= MOST_WITH_LIMITS, labels: true, drawings: true };
+    }
+    for (const what of Object.keys(this.shown)) this.show(what, this.shown[what]);
     if (keepsStage) return;
     this.stage.resize();
     this.stage.frameSubject();
@@ -87,6 +100,18 @@ class Page {
     this.stage = new Stage(canvas, subject, this.wanted.has('fine') ? this.wanted.get('fine') === '1' : undefined);
   }
 
+  // Joints, labels, or what the scene draws.
+  show(what, isShown) {
+    this.shown[what] = isShown;
+    this[what].visible = isShown;
+    const input = document.querySelector(`#toggles input[value=${what}]`);
+    input.checked = isShown;
+    const { joints, bodies } = this.live.recording;
+    input.parentElement.hidden = { joints: joints.length === 0, labels: Object.keys(bodies.names).length === 0 }[what] ?? false;
+    this.#showLegend();
+    this.draw();
+  }
+
   setTheme(theme) {
     this.theme = document.documentElement.dataset.theme = this.bodies.theme = theme;
     setTheme(theme);
@@ -97,8 +122,12 @@ class Page {
   #setMode(mode) {
     this.mode = MODES.includes(mode) ? mode : 'island';
     document.querySelector(`input[name=color][value=${this.mode}]`).checked = true;
-    element('legend').innerHTML = legend(this.mode, this.live.top);
+    this.#showLegend();
     this.draw();
+  }
+  #showLegend() {
+    const withJoints = this.shown.joints && this.live.recording.joints.length > 0;
+    element('legend').innerHTML = legend(this.mode, this.live.top) + (withJoints ? jointLegend() : '');
   }
 
   #change(settings) {
@@ -141,6 +170,9 @@ class Page {
     }
     this.stage.clock.seconds.value = this.time;
     this.bodies.update(this.mode, this.live.top);
+    this.joints.update(-1);
+    this.labels.update();
+    this.drawings.update(0);
     this.hand.draw();
     this.stage.render();
     this.plots.draw();
@@ -203,6 +235,7 @@ class Page {
       event.target.blur();
     });
     for (const input of document.querySelectorAll('input[name=color]')) input.addEventListener('change', () => this.#setMode(input.value));
+    element('toggles').addEventListener('change', ({ target }) => this.show(target.value, target.checked));
     const keys = { ' ': actions.play, ArrowRight: actions.forward, r: actions.again, f: actions.shoot, d: actions.theme };
     addEventListener('keydown', (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('select, input[type=range]')) return;
@@ -224,6 +257,9 @@ function publish(page) {
     get steps() { return page.steps; },
     get report() { return page.report; },
     get isHolding() { return page.hand.isHolding; },
+    // What the viewer's parts have of it: the joints' states, the labels, what the scene draws.
+    get picture() { return { joints: page.joints, labels: page.labels, drawings: page.drawings, live: page.live }; },
+    show(what, isShown) { page.show(what, isShown); page.drawNow(); },
     start(name) { page.start(name); page.drawNow(); },
     play(isPlaying = true) { page.setPlaying(isPlaying); },
     step(count = 1) {

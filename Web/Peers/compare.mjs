@@ -14,12 +14,24 @@ for (const name of names) {
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const digits = (value) => String(Number(value.toPrecision(3)));
 
-const engines = await Promise.all(Object.values(ENGINES).map((make) => make()));
+// Each scene has engines of its own: what one has in its memory is not freed, and one that ran out of it is of no more use.
+const loadAll = () => Promise.all(Object.values(ENGINES).map((make) => make()));
+let engines = await loadAll();
 console.log(`node ${process.version}, one thread; ms a step, and that over Fulcrum's; in brackets how exact the run was\n`);
 console.log(`| scene | bodies | figure | ${engines.map(({ name }) => name).join(' | ')} |`);
 console.log(`|${' --- |'.repeat(3 + engines.length)}`);
 for (const name of names.length > 0 ? names : Object.keys(SCENES)) {
-  const scene = SCENES[name](), runs = engines.map((engine) => ({ ...engine.build(scene), times: [], ratios: [] }));
+  engines ??= await loadAll();
+  const scene = SCENES[name](), runs = engines.map((engine) => {
+    const run = { times: [], ratios: [] };
+    try {
+      Object.assign(run, engine.build(scene));
+    } catch (error) {
+      run.failed = error;
+    }
+    return run;
+  });
+  engines = undefined;
   const steps = Math.min(most, scene.steps);
   // An engine whose memory does not suffice ends here for this scene.
   const advance = (run) => {

@@ -4,7 +4,7 @@ import { Dots, Lines } from './strokes.js';
 
 export class Drawings {
   constructor(recording, stage) {
-    this.frames = recording.drawings;
+    this.recording = recording;
     this.lines = new Lines(stage, 8, 1.6);
     this.dots = new Dots(stage, 10, 8);
     this.visible = false;
@@ -13,7 +13,7 @@ export class Drawings {
   set visible(isVisible) { this.lines.visible = this.dots.visible = isVisible; }
 
   update(frame) {
-    const drawing = this.frames[Math.floor(frame)];
+    const drawing = this.recording.drawings[Math.floor(frame)];
     if (!this.visible || !drawing || drawing === this.shown) return;
     this.shown = drawing;
     this.lines.begin();

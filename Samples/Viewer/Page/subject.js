@@ -84,7 +84,8 @@ export function findSubject(recording, timeline) {
     includeBody(recording, timeline, body, lower, upper);
     return Number.isFinite(lower.x) ? cornersOf(['x', 'y', 'z'].map((axis) => [lower[axis], upper[axis]])) : [];
   });
-  const seen = places.concat(standing);
+  const overPulleys = recording.joints.flatMap(({ isRope, points }) => (isRope ? points.map((point) => [...point, 0]) : []));
+  const seen = places.concat(standing, overPulleys);
   let ranges = rangesOf(seen), shown;
   const { lower, upper, from } = recording.view ?? {};
   if (lower) {

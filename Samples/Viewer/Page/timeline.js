@@ -58,7 +58,8 @@ export class Timeline {
     return this.recording.samples.velocities.subarray(3 * this.sample[body], 3 * this.sample[body] + 3);
   }
   speed(body) {
-    return Math.hypot(...this.velocity(body));
+    const { velocities } = this.recording.samples, at = 3 * this.sample[body];
+    return Math.sqrt(velocities[at] ** 2 + velocities[at + 1] ** 2 + velocities[at + 2] ** 2); // a view and hypot take fifty times as long
   }
 
   // Those of the last frame at or before this one that recorded them; undefined where there is none.

@@ -10,7 +10,8 @@ export const WORLD = -1; // as a body of a joint
 const NONE = [0xffffffff, 0xffffffff];
 const partsOf = (body) => (body === WORLD ? NONE : split(body));
 
-export const SHOWN_STATE = 56; // bytes, see Bindings/Show.cpp
+// Bytes, see Bindings/Show.cpp.
+export const SHOWN_STATE = 56, SHOWN_JOINT = 56, SHOWN_LINE = 28, SHOWN_POINT = 16;
 
 const MOTIONS = ['Static', 'Kinematic', 'Dynamic'];
 const AXES = ['LinearX', 'LinearY', 'LinearZ', 'AngularX', 'AngularY', 'AngularZ'];
@@ -85,11 +86,16 @@ export class World {
     this.#module.must('show', this.address);
     return this.#module.answerBytes();
   }
-  // After each step: the states of what `show` returned, in place, and whether bodies or shapes came that it did not have.
+  // After each step: the states of what `show` returned, in place, and whether bodies, shapes or joints came that it did not have.
+  // Of joints those that changed; of lines and points all that the scene draws.
   readShown() {
     const count = this.#module.call('readShown', this.address);
-    const [address, isChanged, ...origin] = this.#module.numbers(5);
-    return { count, states: this.#module.view(DataView, address, SHOWN_STATE * count), isChanged: isChanged === 1, origin };
+    const [address, isChanged, x, y, z, ...lists] = this.#module.numbers(11);
+    const view = (at, size) => this.#module.view(DataView, at, size);
+    return {
+      count, states: view(address, SHOWN_STATE * count), isChanged: isChanged === 1, origin: [x, y, z],
+      joints: view(lists[0], SHOWN_JOINT * lists[1]), lines: view(lists[2], SHOWN_LINE * lists[3]), points: view(lists[4], SHOWN_POINT * lists[5]),
+    };
   }
   shownBody(index) {
     this.#module.call('shownBody', this.address, index);

@@ -98,6 +98,61 @@ test('a shot adds a body that is drawn and hits', { timeout: 600000 }, async () 
   await page.close();
 });
 
+// The share of the canvas' pixels that change as what the page shows of this kind is switched off.
+const shareOf = (page, what) => page.evaluate((kind) => {
+  const source = document.getElementById('canvas');
+  const pixels = () => {
+    const copy = Object.assign(document.createElement('canvas'), { width: source.width, height: source.height });
+    const context = copy.getContext('2d', { willReadFrequently: true });
+    context.drawImage(source, 0, 0);
+    return context.getImageData(0, 0, copy.width, copy.height).data;
+  };
+  window.fulcrum.show(kind, true);
+  const before = pixels();
+  window.fulcrum.show(kind, false);
+  const after = pixels();
+  window.fulcrum.show(kind, true);
+  const differs = (i) => [0, 1, 2].reduce((sum, k) => sum + Math.abs(before[i + k] - after[i + k]), 0) > 24;
+  let changed = 0;
+  for (let i = 0; i < before.length; i += 4) if (differs(i)) ++changed;
+  return changed / (before.length / 4);
+}, what);
+
+test('joints, labels and what a scene draws are shown, and follow the world', { timeout: 600000 }, async () => {
+  const page = await open(`${pathToFileURL(html)}#scene=springs&paused=1`);
+  const labels = () => page.evaluate(() => window.fulcrum.picture.labels.labels.map(({ sprite }) => [sprite.visible, ...sprite.position.toArray()]));
+  const before = await labels();
+  assert.ok(before.length >= 9 && before.every(([visible]) => visible), 'five frequencies, four dampings');
+  assert.ok(await shareOf(page, 'labels') > 0.005);
+  assert.ok(await shareOf(page, 'joints') > 0.005);
+  await page.evaluate(() => window.fulcrum.step(10));
+  const moved = (await labels()).filter(([, x, y, z], i) => Math.hypot(x - before[i][1], y - before[i][2], z - before[i][3]) > 0.01).length;
+  assert.ok(moved > 4, `${moved} labels moved with what they name`);
+
+  await page.evaluate(() => { window.fulcrum.start('hinge'); window.fulcrum.step(60); });
+  const gaps = await page.evaluate(() => {
+    const { joints, live } = window.fulcrum.picture;
+    return live.recording.joints.map((joint) => joints.error(joint, joint.states.at(-1).limits));
+  });
+  assert.equal(gaps.length, 5);
+  for (const { distance, angle } of gaps) assert.ok(distance < 1e-3 && angle < 1e-3, 'both frames of each hinge are where its bodies are');
+
+  // The winch shortens its rope in each step.
+  await page.evaluate(() => window.fulcrum.start('pulley'));
+  const ropes = () => page.evaluate(() => window.fulcrum.picture.live.recording.joints.map(({ states }) => states.at(-1).limits[0][1]));
+  const long = await ropes();
+  await page.evaluate(() => window.fulcrum.step(60));
+  assert.equal((await ropes()).filter((length, i) => Math.abs(length - long[i]) > 0.01).length, 1);
+
+  await page.evaluate(() => { window.fulcrum.start('query_rays'); window.fulcrum.step(2); });
+  assert.ok(await shareOf(page, 'drawings') > 0.005);
+  // A ball more, and with it the picture is made anew.
+  await page.evaluate(() => { window.fulcrum.start('hinge'); window.fulcrum.show('joints', false); window.fulcrum.shoot(); window.fulcrum.step(1); });
+  assert.equal(await page.evaluate(() => window.fulcrum.picture.joints.visible), false, 'what was switched off stays off');
+  assert.equal(await page.isChecked('#toggles input[value=joints]'), false);
+  await page.close();
+});
+
 test('the sliders act', { timeout: 600000 }, async () => {
   const page = await open(`${pathToFileURL(html)}#scene=pyramid&paused=1`);
   const set = (id, place) => page.evaluate(([name, value]) => {
