@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace fulcrum {
 
 namespace {
 
-// Fewer iterations suffice for equal masses.
+// Where masses are similar the usual iterations suffice.
 constexpr float kLeastMassRatio = 2;
 constexpr int kMostRounds = 256;
+// Of the contacts of a cluster in a substep, before and after it moves each. Enough for the chains of contacts between
+// a few bodies, little compared with the usual iterations of many.
+constexpr uint32_t kMostIterations = 512;
 // Chains of contacts under heavy bodies converge slowly without it.
 constexpr float kOverRelaxation = 1.3f;
 
@@ -45,6 +49,8 @@ LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, Sc
     contactsEnd = scratch.Allocate<uint32_t>(bodies.Size());
     contactsOfBodies = scratch.Allocate<uint32_t>(2 * CountContacts(layout));
     iterates = scratch.Allocate<bool>(CountContacts(layout));
+    clusters = scratch.Allocate<uint32_t>(bodies.Size());
+    iterations = scratch.Allocate<uint32_t>(bodies.Size());
     for (const uint32_t body : layout.bodies) wrongIn[body] = 0;
 }
 
@@ -138,6 +144,20 @@ std::span<const uint32_t> LocalIterations::ContactsOf(uint32_t body) const {
                                             memory_.contactsEnd[body] - memory_.contactsBegin[body]);
 }
 
+uint32_t LocalIterations::JoinClusters(uint32_t a, uint32_t b) {
+    std::span<uint32_t> clusters = memory_.clusters, iterations = memory_.iterations;
+    const auto find = [&](uint32_t body) {
+        while (clusters[body] != body) body = clusters[body] = clusters[clusters[body]];
+        return body;
+    };
+    a = find(a);
+    b = find(b);
+    if (a == b) return a;
+    if (b < a) std::swap(a, b);
+    iterations[a] += iterations[b];
+    return clusters[b] = a;
+}
+
 void LocalIterations::Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax) {
     if (!areListed_) ListContacts();
     areListed_ = true;
@@ -145,8 +165,12 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
     const auto addContactsOf = [&](uint32_t body) {
         for (const uint32_t contact : ContactsOf(body)) memory_.iterates[contact] = true;
     };
-    for (uint32_t i = group_.bodiesBegin; i < group_.bodiesEnd; ++i)
-        if (memory_.wrongIn[layout_.bodies[i]] == mark) addContactsOf(layout_.bodies[i]);
+    for (uint32_t i = group_.bodiesBegin; i < group_.bodiesEnd; ++i) {
+        const uint32_t body = layout_.bodies[i];
+        memory_.clusters[body] = body;
+        memory_.iterations[body] = 0;
+        if (memory_.wrongIn[body] == mark) addContactsOf(body);
+    }
     bool isAnyWrong = true;
     for (int round = 0; round < kMostRounds && isAnyWrong; ++round) {
         isAnyWrong = false;
@@ -158,9 +182,13 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
                 const uint32_t i = static_cast<uint32_t>(next - iterates.begin());
                 auto& batch = batches[i / WidthOf(batches)];
                 const int lane = static_cast<int>(i % WidthOf(batches));
+                const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
+                uint32_t& iterations = memory_.iterations[JoinClusters(a, b)];
+                if (iterations >= kMostIterations) continue;
+                ++iterations;
                 if (!IterateContact(batch, lane, kOverRelaxation, states, settings, relax)) continue;
                 isAnyWrong = true;
-                for (const uint32_t body : {batch.bodyA[lane], SecondBody(batch, lane)}) {
+                for (const uint32_t body : {a, b}) {
                     memory_.wrongIn[body] = mark;
                     addContactsOf(body);
                 }

@@ -3,8 +3,9 @@
 // is pressed into its support, and the velocity of recovery, of which a relax iteration stops as little, throws the
 // heavy one back. So where a contact of bodies of different mass has a large velocity error
 // (ContactSolveSettings::mostError), the contacts of both bodies are iterated, and those of all bodies whose contacts
-// turn out to be as wrong, until none is. Serial, in the order of the colors. Bodies with joints are left out: their
-// joints would have to be iterated, too.
+// turn out to be as wrong, until none is, or the effort for a cluster of such bodies is used up: what many bodies do to
+// each other in a heap is left to the usual iterations. Serial, in the order of the colors. Bodies with joints are left
+// out: their joints would have to be iterated, too.
 // Used by Solve.
 #pragma once
 
@@ -29,6 +30,8 @@ struct LocalMemory {
     std::span<uint32_t> contactsEnd;       // likewise
     std::span<uint32_t> contactsOfBodies;  // two for each contact
     std::span<bool> iterates;              // by contact
+    // By body: clusters of bodies whose contacts were iterated, as a union-find forest, and how often, at its root.
+    std::span<uint32_t> clusters, iterations;
 };
 
 // Those of one group.
@@ -56,6 +59,7 @@ private:
     void VisitRanges(Visit&& visit);
     void ListContacts();
     std::span<const uint32_t> ContactsOf(uint32_t body) const;
+    uint32_t JoinClusters(uint32_t a, uint32_t b);
 
     const BodyStore& bodies_;
     const JointStore& joints_;
