@@ -65,8 +65,8 @@ struct SnapshotAccess {
     static void FindAwakePlaces(BodyStore& bodies);
     // which of them were pushed, are to stop, or stand for the world;
     static void ListSpecial(BodyStore& bodies);
-    // the body and the piece of each collider; returns whether all bodies are those that they were; which of them moved;
-    // the trees;
+    // the body and the piece of each collider; returns whether all bodies are those that they were; which of them
+    // moved; the trees;
     static bool AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
     static void ListMoved(ColliderStore& colliders);
     static void UpdateTrees(const BodyStore& bodies, ColliderStore& colliders);
