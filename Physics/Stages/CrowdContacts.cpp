@@ -18,8 +18,8 @@ constexpr float kCenterOffset =
     1e-3f;  // offset of coincident centers: large enough to define a direction, too small to be visible
 constexpr float kCrowdedOverlap = 0.01f;  // smaller overlaps, as of bodies at rest, do not count
 // Crowded bodies are separated up to this: what is left is pushed out at full stiffness, and all contacts of a pile add
-// up, to 1 to 10 m/s with 1 % at steps of 1/240 s.
-constexpr float kSeparatedOverlap = 0.001f;
+// up, to 1 to 10 m/s with 1 % at steps of 1/240 s. Bodies at rest under the load of a small pile must not be crowded.
+constexpr float kSeparatedOverlap = 0.004f;
 // Levels of crowded bodies: bodies that overlap others have the highest. Bodies that touch crowded ones and were
 // crowded before have one level less than their neighbor, since recovery velocities propagate.
 constexpr uint32_t kLevelBits = 2;

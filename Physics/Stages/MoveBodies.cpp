@@ -247,7 +247,9 @@ private:
         const float speed =
             std::max(FarthestSpeed(bodies_, ending.body, ending.slowSpeed, ending.v, ending.turn.angularVelocity),
                      ending.pulled);
-        const bool slow = !d.crowded && speed < ending.slowSpeed;
+        // Jointed ones keep the velocities with which they are separated.
+        const bool isPushed = d.crowded && !joints_.HasAny(ending.body);
+        const bool slow = !isPushed && speed < ending.slowSpeed;
         d.slowSeconds = slow ? d.slowSeconds + step_.dt : 0.0f;
         const SleepSettings& sleep = step_.settings.sleep;
         findings.sleepCandidates += sleep.enabled && d.allowSleep && slow && d.slowSeconds >= sleep.seconds;
