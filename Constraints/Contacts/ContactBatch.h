@@ -63,7 +63,8 @@ struct ContactBatch {
     uint16_t gentle = 0;    // lanes whose penetration recovery is limited to RareContactData::gentlePushSpeed
     // Lanes whose bodies moved so far relative to each other that they should collide again.
     uint16_t rotated = 0, slid = 0;
-    // Lanes with a velocity error above ContactSolveSettings::mostError before the last velocity iteration.
+    // Lanes with a velocity error above ContactSolveSettings::mostError before the last velocity iteration; not kept if
+    // B is static or kinematic.
     uint16_t unsolved = 0;
     // How often the bodies collided in this step: they collide again after as many times the relative motion for which
     // one manifold is valid (UpdateSeparations).

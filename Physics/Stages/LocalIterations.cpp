@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace fulcrum {
 
@@ -58,11 +57,11 @@ LocalIterations::LocalIterations(const BodyStore& bodies, const JointStore& join
                                  const SolverGroup& group, const LocalMemory& memory)
     : bodies_(bodies), joints_(joints), layout_(layout), group_(group), memory_(memory) {}
 
-template <int N, bool kFixedB>
-void LocalIterations::MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
+template <int N>
+void LocalIterations::MarkBodies(const ContactBatch<N, false>& batch, uint8_t substep) {
     for (int lane = 0; lane < batch.count; ++lane) {
         if (!(batch.unsolved >> lane & 1)) continue;
-        const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
+        const uint32_t a = batch.bodyA[lane], b = batch.bodyB[lane];
         const float massA = bodies_.masses[a].inverseMass, massB = bodies_.masses[b].inverseMass;
         if (std::max(massA, massB) < kLeastMassRatio * std::min(massA, massB)) continue;
         if (joints_.HasAny(a) || joints_.HasAny(b)) continue;
@@ -115,8 +114,7 @@ void LocalIterations::ListContacts() {
             }
         });
     };
-    const std::span bodies =
-        std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
+    const std::span<const uint32_t> bodies = Bodies();
     std::span<uint32_t> begin = memory_.contactsBegin, end = memory_.contactsEnd;
     for (const uint32_t body : bodies) end[body] = 0;
     uint32_t next = 2 * CountContacts(layout_);
@@ -144,18 +142,14 @@ std::span<const uint32_t> LocalIterations::ContactsOf(uint32_t body) const {
                                             memory_.contactsEnd[body] - memory_.contactsBegin[body]);
 }
 
-uint32_t LocalIterations::JoinClusters(uint32_t a, uint32_t b) {
-    std::span<uint32_t> clusters = memory_.clusters, iterations = memory_.iterations;
-    const auto find = [&](uint32_t body) {
-        while (clusters[body] != body) body = clusters[body] = clusters[clusters[body]];
-        return body;
-    };
-    a = find(a);
-    b = find(b);
-    if (a == b) return a;
-    if (b < a) std::swap(a, b);
-    iterations[a] += iterations[b];
-    return clusters[b] = a;
+// Returns the root of their set.
+uint32_t LocalIterations::JoinClusters(UnionFind& clusters, uint32_t a, uint32_t b) {
+    const uint32_t ofA = clusters.Find(a), ofB = clusters.Find(b);
+    if (ofA == ofB) return ofA;
+    clusters.Unite(ofA, ofB);
+    const uint32_t root = clusters.Find(ofA);
+    memory_.iterations[root] += memory_.iterations[root == ofA ? ofB : ofA];
+    return root;
 }
 
 void LocalIterations::Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax) {
@@ -165,9 +159,9 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
     const auto addContactsOf = [&](uint32_t body) {
         for (const uint32_t contact : ContactsOf(body)) memory_.iterates[contact] = true;
     };
-    for (uint32_t i = group_.bodiesBegin; i < group_.bodiesEnd; ++i) {
-        const uint32_t body = layout_.bodies[i];
-        memory_.clusters[body] = body;
+    const std::span<const uint32_t> bodies = Bodies();
+    UnionFind clusters(memory_.clusters, bodies);
+    for (const uint32_t body : bodies) {
         memory_.iterations[body] = 0;
         if (memory_.wrongIn[body] == mark) addContactsOf(body);
     }
@@ -183,7 +177,7 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
                 auto& batch = batches[i / WidthOf(batches)];
                 const int lane = static_cast<int>(i % WidthOf(batches));
                 const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
-                uint32_t& iterations = memory_.iterations[JoinClusters(a, b)];
+                uint32_t& iterations = memory_.iterations[JoinClusters(clusters, a, b)];
                 if (iterations >= kMostIterations) continue;
                 ++iterations;
                 if (!IterateContact(batch, lane, kOverRelaxation, states, settings, relax)) continue;

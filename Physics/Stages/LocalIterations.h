@@ -13,6 +13,7 @@
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 #include <Fulcrum/Physics/World/JointStore.h>
+#include <Fulcrum/Physics/World/UnionFind.h>
 
 #include <atomic>
 #include <span>
@@ -30,7 +31,7 @@ struct LocalMemory {
     std::span<uint32_t> contactsEnd;       // likewise
     std::span<uint32_t> contactsOfBodies;  // two for each contact
     std::span<bool> iterates;              // by contact
-    // By body: clusters of bodies whose contacts were iterated, as a union-find forest, and how often, at its root.
+    // By body: clusters of bodies whose contacts were iterated, as sets, and how often, at the root of a set.
     std::span<uint32_t> clusters, iterations;
 };
 
@@ -43,7 +44,8 @@ public:
     // After a velocity iteration over a batch. Called by several threads, for different batches.
     template <int N, bool kFixedB>
     void Check(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
-        if (batch.unsolved != 0 && !kFixedB) MarkBodies(batch, substep);
+        if constexpr (!kFixedB)
+            if (batch.unsolved != 0) MarkBodies(batch, substep);
     }
 
     // Whether some contact was wrong in the substep.
@@ -53,13 +55,16 @@ public:
     void Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax);
 
 private:
-    template <int N, bool kFixedB>
-    void MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep);
+    template <int N>
+    void MarkBodies(const ContactBatch<N, false>& batch, uint8_t substep);
     template <class Visit>
     void VisitRanges(Visit&& visit);
     void ListContacts();
+    std::span<const uint32_t> Bodies() const {
+        return std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
+    }
     std::span<const uint32_t> ContactsOf(uint32_t body) const;
-    uint32_t JoinClusters(uint32_t a, uint32_t b);
+    uint32_t JoinClusters(UnionFind& clusters, uint32_t a, uint32_t b);
 
     const BodyStore& bodies_;
     const JointStore& joints_;
