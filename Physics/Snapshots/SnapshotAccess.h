@@ -274,12 +274,13 @@ void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts
            sensors, removed, number, lock, outsideFatBounds, seenPoses] = world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events, errors] = step;
-    auto& [deepOverlaps, dispersing, crowded] = crowd;
+    auto& [deepOverlaps, dispersing, crowded, settling, settled] = crowd;
     s.Begin(SnapshotSection::Step);
     s.List(removed);
     s.List(deepOverlaps);
     VisitList(s, dispersing, 128, [&](auto& body) { VisitDispersing(s, body); });
     s.List(crowded);
+    VisitList(s, settling, 8, [&](auto& body) { s(body.body, body.seconds); });
     s.List(seams);
     VisitList(s, events.broken, 32, [&](auto& joint) { VisitBroken(s, joint); });
     VisitList(s, events.bodies, 64, [&](auto& body) { VisitReportedBody(s, body); });

@@ -18,12 +18,19 @@ constexpr float kCenterOffset =
     1e-3f;  // offset of coincident centers: large enough to define a direction, too small to be visible
 constexpr float kCrowdedOverlap = 0.01f;  // smaller overlaps, as of bodies at rest, do not count
 // Crowded bodies are separated up to this: what is left is pushed out at full stiffness, and all contacts of a pile add
-// up, to 1 to 10 m/s with 1 % at steps of 1/240 s. Bodies at rest under the load of a small pile must not be crowded.
-constexpr float kSeparatedOverlap = 0.004f;
+// up, to 1 to 10 m/s with 1 % at steps of 1/240 s.
+constexpr float kSeparatedOverlap = 0.001f;
+// Less than this may be what the load of a small pile presses in, and is separated for some time only.
+constexpr float kLoadedOverlap = 0.004f;
+constexpr float kSettlingSeconds = 0.5f;
 // Levels of crowded bodies: bodies that overlap others have the highest. Bodies that touch crowded ones and were
 // crowded before have one level less than their neighbor, since recovery velocities propagate.
-constexpr uint32_t kLevelBits = 2;
 constexpr uint8_t kOverlaps = 3;
+// In the list of CrowdState and of workers: the body times 8, plus its level or this.
+constexpr uint32_t kLevelBits = 3;
+constexpr uint32_t kOverlapsDeeply = kOverlaps + 1;
+uint32_t BodyOf(uint32_t noted) { return noted >> kLevelBits; }
+uint32_t LevelOf(uint32_t noted) { return noted & ((1u << kLevelBits) - 1); }
 // The fraction of an overlap with an immovable body that is removed per substep: removing all at once would throw
 // bodies up.
 constexpr float kImmovableOverlapRemoved = 0.125f;
@@ -116,26 +123,53 @@ void NoteOverlap(const CollideStores& stores, uint32_t index, PairShapes shapes,
     const float radii = shapes.a.InnerRadius() + (pair.fixedB ? 0.0f : shapes.b.InnerRadius());
     const DeepestPoint deepest =
         DeepestPointOf(bodies, stores.pairs, index, ContactNormal(bodies, stores.pairs, index));
-    const bool overlaps = deepest.separation < -kSeparatedOverlap * radii;
+    const bool overlaps = deepest.separation < -kSeparatedOverlap * radii,
+               overlapsDeeply = deepest.separation < -kLoadedOverlap * radii;
     // A fast approach is an impact, not a placement, and is solved normally.
     const bool wasPut = isPlaced && deepest.separation < -kCrowdedOverlap * radii &&
                         deepest.approach < stores.step.settings.depenetrationSpeed;
     const auto note = [&](uint32_t body, uint8_t level, uint8_t levelOfOther) {
         if (level == 0 && !wasPut) return;
-        const uint8_t now = overlaps ? kOverlaps : uint8_t(std::max<int>(levelOfOther, 1) - 1);
-        if (now > 0) findings.crowdedOverlaps.push_back(body << kLevelBits | now);
+        const auto add = [&](uint32_t now) { findings.crowdedOverlaps.push_back(body << kLevelBits | now); };
+        if (overlapsDeeply) return add(kOverlapsDeeply);
+        if (overlaps) add(kOverlaps);
+        if (levelOfOther > 1) add(levelOfOther - 1u);
     };
     note(pair.bodyA, a.crowded, b.crowded);
     if (!pair.fixedB) note(pair.bodyB, b.crowded, a.crowded);
 }
 
-void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers) {
+void GatherCrowd(const StepContext& step, BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers) {
     bodies.ForgetPlaced();
-    for (const uint32_t noted : crowd.crowded) bodies.dynamics[noted >> kLevelBits].crowded = 0;
-    Gather(workers, &WorkerFindings::crowdedOverlaps, crowd.crowded);
-    for (const DispersingBody& dispersing : crowd.dispersing)
-        crowd.crowded.push_back(dispersing.body << kLevelBits | kOverlaps);
-    for (const uint32_t noted : crowd.crowded) bodies.dynamics[noted >> kLevelBits].crowded = noted & kOverlaps;
+    for (const uint32_t body : crowd.crowded) bodies.dynamics[body].crowded = 0;
+    Array<uint32_t>& noted = crowd.crowded;
+    Gather(workers, &WorkerFindings::crowdedOverlaps, noted);
+    Array<SettlingBody>& settling = crowd.settling;
+    crowd.settled.swap(settling);
+    settling.clear();
+    size_t earlier = 0, kept = 0;
+    for (size_t begin = 0, end = 0; begin < noted.size(); begin = end) {
+        const uint32_t body = BodyOf(noted[begin]);
+        uint32_t level = 0;  // of those below kOverlaps
+        for (; end < noted.size() && BodyOf(noted[end]) == body; ++end)
+            if (LevelOf(noted[end]) < kOverlaps) level = LevelOf(noted[end]);
+        if (const uint32_t most = LevelOf(noted[end - 1]); most == kOverlapsDeeply) {
+            level = kOverlaps;
+        } else if (most == kOverlaps) {
+            while (earlier < crowd.settled.size() && crowd.settled[earlier].body < body) ++earlier;
+            const bool isEarlier = earlier < crowd.settled.size() && crowd.settled[earlier].body == body;
+            settling.push_back({body, (isEarlier ? crowd.settled[earlier].seconds : 0.0f) + step.dt});
+            if (settling.back().seconds < kSettlingSeconds) level = kOverlaps;
+        }
+        if (level == 0) continue;
+        bodies.dynamics[body].crowded = static_cast<uint8_t>(level & kOverlaps);
+        noted[kept++] = body;
+    }
+    noted.resize(kept);
+    for (const DispersingBody& dispersing : crowd.dispersing) {
+        bodies.dynamics[dispersing.body].crowded = kOverlaps;
+        noted.push_back(dispersing.body);
+    }
     Gather(workers, &WorkerFindings::deepOverlaps, crowd.deepOverlaps);
     if (MostRepeated(crowd.deepOverlaps) < kManyOverlaps) crowd.deepOverlaps.clear();
 }

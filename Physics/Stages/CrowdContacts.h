@@ -27,7 +27,7 @@ RelativePose WithDistinctCenters(const BodyStore& bodies, const ColliderStore& c
 void NoteOverlap(const CollideStores& stores, uint32_t pair, PairShapes shapes, const RelativePose& bInA,
                  WorkerFindings& findings);
 // Merges the workers' findings into `crowd`, and marks the crowded bodies. One thread.
-void GatherCrowd(BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
+void GatherCrowd(const StepContext& step, BodyStore& bodies, CrowdState& crowd, std::span<WorkerFindings> workers);
 
 // Limits the velocity with which a dispersing body moves for the next h seconds: contacts and joints change it by at
 // most contactPushSpeed, and it is not pressed into immovable bodies, whose soft contacts would yield to so many

@@ -57,7 +57,7 @@ constexpr Stage kStages[] = {
              CollideActivated(step, world.bodies, world.colliders, world.joints, world.coloring, world.pairs,
                               state.pairs, workers, state.report);
          }
-         GatherCrowd(world.bodies, state.crowd, workers.findings);
+         GatherCrowd(step, world.bodies, state.crowd, workers.findings);
      }},
     {"Color",
      [](WorldState& world, StepState& state, const StepContext&, const StepWorkers&) {

@@ -21,8 +21,8 @@ size_t HeapBytes(const PairUpdates& updates) {
 }
 
 size_t HeapBytes(const CrowdState& crowd) {
-    const auto& [deepOverlaps, dispersing, crowded] = crowd;
-    return HeapBytes(deepOverlaps, dispersing, crowded);
+    const auto& [deepOverlaps, dispersing, crowded, settling, settled] = crowd;
+    return HeapBytes(deepOverlaps, dispersing, crowded, settling, settled);
 }
 
 size_t HeapBytes(const StepState& step) {

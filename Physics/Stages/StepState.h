@@ -40,7 +40,7 @@ struct alignas(64) WorkerFindings {
     Array<uint64_t> pairs;             // FindPairs: keys of new or resting pairs
     uint32_t deepPairs = 0;            // FindPairs: how many of these pairs overlap deeply
     Array<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
-    Array<uint32_t> crowdedOverlaps;   // Collide: crowded bodies and their levels, once for each contact
+    Array<uint32_t> crowdedOverlaps;   // Collide: crowded bodies and their levels, for each contact
     SurfaceContacts surface;           // Collide: temporary
     Array<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     Array<MoreManifold> more;                                    // Collide: manifolds without a slot yet
@@ -90,12 +90,20 @@ struct PairUpdates {
 
 size_t HeapBytes(const PairUpdates& updates);
 
+// A crowded body that overlaps others by so little that this may be its load (Stages/CrowdContacts.h).
+struct SettlingBody {
+    uint32_t body;
+    float seconds;  // for how long so far
+};
+
 // Bodies of crowds (Stages/Crowd.h).
 struct CrowdState {
     // Collide: bodies, ascending, once for each deep overlap; empty if none has many.
     Array<uint32_t> deepOverlaps;
     Array<DispersingBody> dispersing;  // by body, ascending
-    Array<uint32_t> crowded;           // with their levels (CrowdContacts.cpp), ascending, repeated
+    Array<uint32_t> crowded;           // bodies, those of `dispersing` last
+    Array<SettlingBody> settling;      // by body, ascending
+    Array<SettlingBody> settled;       // scratch memory
 };
 
 size_t HeapBytes(const CrowdState& crowd);
