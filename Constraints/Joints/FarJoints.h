@@ -27,14 +27,14 @@ FULCRUM_FORCE_INLINE Real SecondsLeft(const Real& before, const JointSolveSettin
 }
 
 // For how many seconds a joint that is far apart has not been distant. The pull ends after the time that it takes to
-// move by 20 m or rotate by 20 rad: a joint that is still apart then is held apart, by a pile on it, say, and would
+// move by 40 m or rotate by 40 rad: a joint that is still apart then is held apart, by a pile on it, say, and would
 // jitter.
 template <class Real, class Mask>
 FULCRUM_FORCE_INLINE Real SecondsNear(const Real& wasPulled, const Mask& isDistant,
                                       const JointSolveSettings& settings) {
     return Select(isDistant, Real(0.0f), Max(wasPulled - Real(kWasFar), Real(0.0f)) + Real(settings.dt));
 }
-inline float LongestNear(const JointSolveSettings& settings) { return 20.0f / settings.maxPushSpeed; }
+inline float LongestNear(const JointSolveSettings& settings) { return 40.0f / settings.maxPushSpeed; }
 
 // Thresholds by lane, as fractions of the largest push speed.
 template <class Real>
