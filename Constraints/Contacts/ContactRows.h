@@ -273,8 +273,16 @@ FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodySta
     Scatter(batch, twists);
 }
 
-// For batches with restitution, or with a surface velocity between two dynamic bodies.
+// For batches with restitution, with a surface velocity between two dynamic bodies, or with gentle lanes.
 template <Pass kPass, int N, bool kFixedB>
 void SolveRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+
+template <Pass kPass, int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
+                                       const ContactSolveSettings& settings) {
+    if (batch.bounces || (!kFixedB && batch.hasSurface) || batch.gentle != 0)
+        return SolveRareRows<kPass>(batch, states, settings);
+    SolveRows<kPass, false>(batch, states, settings);
+}
 
 }  // namespace fulcrum::contacts

@@ -1,4 +1,5 @@
 #include <Fulcrum/Constraints/Contacts/ContactLanes.h>
+#include <Fulcrum/Constraints/Contacts/ContactRows.h>
 
 namespace fulcrum {
 
@@ -18,16 +19,12 @@ bool IterateContact(ContactBatch<N, kFixedB>& batch, int lane, float overRelaxat
     single.hasNotes = batch.hasNotes;
     single.hasSurface = batch.hasSurface;
     single.gentle = batch.gentle >> lane & 1;
-    single.hasCollidedAgain = false;  // where lanes are outdated is known from the iterations over all contacts
     single.inverseSoftDepth = batch.inverseSoftDepth[lane];
     for (int i = 0; i < batch.pointCount; ++i)
         single.rows[i].inverseResponse = single.rows[i].inverseResponse * Wide<1>(overRelaxation);
-    if (relax) RelaxContacts(single, states, settings);
+    if (relax) SolveAllRows<Pass::Relax>(single, states, settings);
     else SolveContactVelocities(single, states, settings);
-    for (int i = 0; i < batch.pointCount; ++i) {
-        batch.rows[i].impulse.Set(lane, single.rows[i].impulse[0]);
-        batch.rows[i].separation.Set(lane, single.rows[i].separation[0]);
-    }
+    for (int i = 0; i < batch.pointCount; ++i) batch.rows[i].impulse.Set(lane, single.rows[i].impulse[0]);
     for (int k = 0; k < 3; ++k) batch.frictionImpulse[k].Set(lane, single.frictionImpulse[k][0]);
     return single.unsolved != 0;
 }

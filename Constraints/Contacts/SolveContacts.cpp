@@ -34,14 +34,6 @@ FULCRUM_FORCE_INLINE void FindOutdated(ContactBatch<N, kFixedB>& batch, const Tw
     }
 }
 
-template <Pass kPass, int N, bool kFixedB>
-FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
-                                       const ContactSolveSettings& settings) {
-    if (batch.bounces || (!kFixedB && batch.hasSurface) || batch.gentle != 0)
-        return SolveRareRows<kPass>(batch, states, settings);
-    SolveRows<kPass, false>(batch, states, settings);
-}
-
 }  // namespace
 
 void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h, float itsMaxPushSpeed) {
