@@ -121,8 +121,16 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         errors.line = Vec2<Real>(Dot<Real>(place.offset, n1), Dot<Real>(place.offset, n2));
         Vec3<Real> reach = place.offset;
         if (batch.far) {
-            const Vec3<Real> along = place.line * Dot<Real>(place.offset, place.line);
-            for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), along[k], reach[k]);
+            // The way along the line is a gap, too, as far as limits are exceeded. No longer than some radii of
+            // gyration, 1 / radius^2 being inverse inertia / inverse mass; bodies without inertia do not spin.
+            constexpr float kMostReach = 4;
+            const Sym3<Real>& inertia = batch.massA.inertia;
+            const Real along = Dot<Real>(place.offset, place.line),
+                       perRadius = (inertia.xx + inertia.yy + inertia.zz) * Real(1.0f / 3),
+                       square = Real(kMostReach * kMostReach) * batch.massA.mass,
+                       part = Min(Real(1.0f), Sqrt(square / Max(along * along * perRadius, Real(1e-30f))));
+            const Vec3<Real> shorter = place.line * (along * Select(perRadius > Real(0.0f), part, Real(1.0f)));
+            for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), shorter[k], reach[k]);
         }
         batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2});
     }
