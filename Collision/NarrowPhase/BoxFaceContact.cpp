@@ -195,7 +195,7 @@ bool BuildContact(const BoxPair& pair, const ReferenceBoxFace& seen, float separ
     if (!(least <= separation + tolerances.prefer)) return false;
 
     int chosen[4];
-    const int count = ChooseFour(points, tolerances.prefer, chosen);
+    const int count = ChooseFour(points, tolerances.prefer, chosen, tolerances.Weights());
     static const Matrix3 kOwn{Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)};
     const Vector3* own = ofA ? &kOwn.x : &pair.rotation.x;  // this box's axes in A's frame
     const Vector3 normal = own[0] * seen.direction[0] + own[1] * seen.direction[1] + own[2] * seen.direction[2];

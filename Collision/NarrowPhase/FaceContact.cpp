@@ -99,7 +99,8 @@ FaceContact BuildFaceContact(const PolyhedronPair& pair, const ReferenceFace& fa
     }
 
     int chosen[4];
-    manifold.pointCount = clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen);
+    manifold.pointCount =
+        clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen, tolerances.Weights());
     for (int i = 0; i < manifold.pointCount; ++i) {
         const int c = chosen[i];
         const Vector3& x = clipped[c];
@@ -139,7 +140,7 @@ void AddFacesAhead(const PolyhedronPair& pair, const ContactTolerances& toleranc
                              clip.FeatureOf(i, view, face.ofA)};
     };
     AddPointsAhead<kMostClipped>(clip.clipped.Count(), pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(),
-                                 tolerances.prefer, manifold);
+                                 tolerances.prefer, tolerances.Weights(), manifold);
 }
 
 }  // namespace fulcrum

@@ -51,10 +51,11 @@ struct PointWeights {
     float least = 1.0f;  // 0..1; 1: same weight as touching points
     float closing = 0;   // m, >= 0: approach of the shape within the step
 };
+inline constexpr float kLeastPointWeight = 0.02f;
 // For points on triangles of a surface, which lie in several planes. motion: m, towards the surface within the step; a
 // body that rocks to rest moves by less than a tenth of its inner radius, m.
 inline PointWeights WeightsOnSurfaces(float motion, float innerRadius) {
-    return {0.02f, Max(motion - 0.1f * innerRadius, 0.0f)};
+    return {kLeastPointWeight, Max(motion - 0.1f * innerRadius, 0.0f)};
 }
 
 // Writes the chosen indices in increasing order and returns how many: first a deepest point, then the point farthest

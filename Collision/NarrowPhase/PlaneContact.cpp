@@ -46,8 +46,8 @@ void AddVertices(const Polyhedron& core, const Vector3& down, float outside, flo
 // Manifold reduction: the deepest vertex and those of the face towards the plane first, since a tilted body will land
 // on these; if they are fewer than four, the closest of the others. Maximizing the area over all vertices could choose
 // points of two sides of a rod and miss the end that touches next.
-int ChooseOfFace(const Polyhedron& core, const Vector3& down, float depthSlop, const NearVertices& near,
-                 int (&chosen)[4]) {
+int ChooseOfFace(const Polyhedron& core, const Vector3& down, const ContactTolerances& tolerances,
+                 const NearVertices& near, int (&chosen)[4]) {
     const ConvexHull::Face& face = core.faces[FaceAlong(core, down)];
     const uint8_t* corners = core.indices + face.firstIndex;
     const float* separations = near.points.separation;
@@ -64,7 +64,7 @@ int ChooseOfFace(const Polyhedron& core, const Vector3& down, float depthSlop, c
         places[points.count] = i;
         points.Add(near.points.u[i], near.points.v[i], separations[i]);
     }
-    int count = ChooseFour(points, depthSlop, chosen);
+    int count = ChooseFour(points, tolerances.prefer, chosen, tolerances.Weights());
     for (int i = 0; i < count; ++i) chosen[i] = places[chosen[i]];
     const int missing = std::min(4 - count, otherCount);
     std::partial_sort(others, others + missing, others + otherCount, [&](int a, int b) {
@@ -102,13 +102,12 @@ void CollidePlane(const Plane& plane, const ConvexShape& shape, const RelativePo
         PolyhedronStorage storage;
         const Polyhedron core = CoreOf(shape, storage);
         AddVertices(core, down, outside, least, near);
-        if (near.points.count > 4 && core.faceCount > 0)
-            count = ChooseOfFace(core, down, tolerances.prefer, near, chosen);
+        if (near.points.count > 4 && core.faceCount > 0) count = ChooseOfFace(core, down, tolerances, near, chosen);
     } else {
         AddSupportingFace(shape, down, outside, least, near);
     }
     if (near.points.count == 0) return;
-    if (count == 0) count = ChooseFour(near.points, tolerances.prefer, chosen);
+    if (count == 0) count = ChooseFour(near.points, tolerances.prefer, chosen, tolerances.Weights());
     manifold.normal = plane.Normal();
     for (int i = 0; i < count; ++i) {
         const Vector3 corner = bInA.Transform(near.positions[chosen[i]]);

@@ -13,7 +13,8 @@ inline constexpr float kLeastCosineAhead = 0.5f;
 // Adds to a manifold of one or two points those of `count` others, pointAt(0) to pointAt(count - 1), whose separation
 // is at most `reach`, m; at most four in all. Points within `apart` meters of an existing one are left out.
 template <int kMost, class PointAt>
-void AddPointsAhead(int count, const PointAt& pointAt, float reach, float apart, float depthSlop, Manifold& manifold) {
+void AddPointsAhead(int count, const PointAt& pointAt, float reach, float apart, float depthSlop,
+                    const PointWeights& weighting, Manifold& manifold) {
     const Vector3 tangentU = Perpendicular(manifold.normal), tangentV = Cross<float>(manifold.normal, tangentU);
     const ManifoldPoint known[2] = {manifold.points[0], manifold.points[1]};
     const int knownCount = manifold.pointCount;
@@ -32,7 +33,7 @@ void AddPointsAhead(int count, const PointAt& pointAt, float reach, float apart,
         if (isNew) add(point, i);
     }
     int chosen[Manifold::kMaxPoints];
-    manifold.pointCount = ChooseFour(points, depthSlop, chosen);
+    manifold.pointCount = ChooseFour(points, depthSlop, chosen, weighting);
     for (int i = 0; i < manifold.pointCount; ++i)
         manifold.points[i] = chosen[i] < knownCount ? known[chosen[i]] : pointAt(source[chosen[i]]);
 }

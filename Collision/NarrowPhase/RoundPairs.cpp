@@ -71,7 +71,7 @@ void AddEnds(const Segment& onA, const Segment& onB, float radiusA, float radius
                          CrossingFeature(1, static_cast<uint32_t>(i))};
     }
     AddPointsAhead<8>(
-        count, [&](int i) { return ends[i]; }, reach, smaller, 0.01f * smaller, manifold);
+        count, [&](int i) { return ends[i]; }, reach, smaller, 0.01f * smaller, {}, manifold);
 }
 
 }  // namespace
