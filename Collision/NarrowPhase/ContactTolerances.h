@@ -19,9 +19,9 @@ struct ContactTolerances {
     float feature;  // m: vertices this close to the extreme one belong to the supporting feature
     // A face of A is also preferred if the cosine between its normal and the best axis is at least this.
     float faceOfACosine = 2;
-    // m: motion within the step, beyond that of resting bodies; for contacts with surfaces of the shape towards it
-    float closing;
-    bool facesAhead;  // whether contacts of edges get points of the adjacent faces, too
+    float closing = 0;  // m, for contacts with surfaces: motion of the shape towards it within the step
+    bool rests;         // whether the shapes move little within the step
+    bool facesAhead;    // whether contacts of edges get points of the adjacent faces, too
 
     // `innerRadii`: the sum of the radii of the balls inside the two cores, or a size for flat ones; `rounding`: the
     // sum of their convex radii. In m.
@@ -29,10 +29,11 @@ struct ContactTolerances {
         : reach(settings.speculativeDistance + rounding),
           prefer(Min(0.02f * settings.speculativeDistance, 0.002f * (innerRadii + rounding))),
           feature(1e-4f * (innerRadii + rounding)),
-          closing(Max(settings.speculativeDistance - kRestingAhead * (innerRadii + rounding), 0.0f)),
+          rests(settings.speculativeDistance <= kRestingAhead * (innerRadii + rounding)),
           facesAhead(settings.speculativeDistance > kFarAhead * (innerRadii + rounding)) {}
 
-    PointWeights Weights() const { return {kLeastPointWeight, Max(closing, 0.0f)}; }
+    // For contacts of convex shapes. Of those that move fast the corners that touch next need not be the nearest.
+    PointWeights Weights() const { return rests ? PointWeights{kLeastPointWeight, 0, 1e-3f} : PointWeights{}; }
     float Apart() const { return 500 * feature; }  // m: points closer to each other than this are redundant
 };
 

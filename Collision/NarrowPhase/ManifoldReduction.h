@@ -50,6 +50,7 @@ int FarthestOutside(const FlatPoints<kMost>& points, const float (&weights)[kMos
 struct PointWeights {
     float least = 1.0f;  // 0..1; 1: same weight as touching points
     float closing = 0;   // m, >= 0: approach of the shape within the step
+    float tilt = 1e-4f;  // rad, halfway to the least weight
 };
 inline constexpr float kLeastPointWeight = 0.02f;
 // For points on triangles of a surface, which lie in several planes. motion: m, towards the surface within the step; a
@@ -67,7 +68,7 @@ inline PointWeights WeightsOnSurfaces(float motion, float innerRadius) {
 // are resolved in favor of the first point, so that rounding and tiny motions do not change the choice.
 template <int kMost>
 int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], const PointWeights& weighting = {}) {
-    constexpr float kNearly = 0.99f, kTilt = 0.0001f;  // rad: halfway to the least weight
+    constexpr float kNearly = 0.99f;
     const int count = points.count;
     if (count <= 4) {
         for (int i = 0; i < count; ++i) chosen[i] = i;
@@ -101,7 +102,7 @@ int ChooseFour(FlatPoints<kMost>& points, float depthSlop, int (&chosen)[4], con
     float farthestWeighted = farthest;
     if (weighting.least < 1.0f) {
         const Wide<8> touching(Max(points.separation[first], 0.0f)),
-            perTilt(1.0f / (kTilt * Sqrt(farthest) + weighting.closing));
+            perTilt(1.0f / (weighting.tilt * Sqrt(farthest) + weighting.closing));
         best = Wide<8>(0.0f);
         for (int k = 0; k < blocks; ++k) {
             const Wide<8> above = Max(Wide<8>::Load(points.separation + 8 * k) - touching, Wide<8>(0.0f));
