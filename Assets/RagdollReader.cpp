@@ -47,7 +47,7 @@ Result<RagdollSettings> ReadRagdoll(const std::string& file) {
     Result<RagdollSettings> settings = Error{ErrorCode::Unsupported, ""};
     try {
         settings = RagdollFromJson(Json::parse(stream));
-    } catch (const Json::parse_error& error) {
+    } catch (const Json::exception& error) {
         return WrongAt(file, error.what());
     }
     if (!settings) return Error{settings.GetError().code, file + ": " + settings.GetError().message};

@@ -245,22 +245,25 @@ private:
     std::map<const Shape*, Json> shapeOf_;  // what stands in a body's place
 };
 
+// A name that is no UTF-8, as a program or a CBOR file may have it, is written with replacement characters.
+std::string Dump(const Json& node) { return node.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 // One element of the lists a line.
 std::string Text(const Json& scene) {
     std::string text = "{";
     const char* before = "\n";
     for (const auto& [name, node] : scene.items()) {
-        text += before + Json(name).dump() + ": ";
+        text += before + Dump(Json(name)) + ": ";
         before = ",\n";
         const bool isList = node.is_array() || name == "shapes";
         if (!isList || node.empty()) {
-            text += node.dump();
+            text += Dump(node);
             continue;
         }
         text += node.is_array() ? "[" : "{";
         const char* beforeOne = "\n  ";
         for (const auto& [key, element] : node.items()) {
-            text += beforeOne + (node.is_array() ? "" : Json(key).dump() + ": ") + element.dump();
+            text += beforeOne + (node.is_array() ? "" : Dump(Json(key)) + ": ") + Dump(element);
             beforeOne = ",\n  ";
         }
         text += node.is_array() ? "\n]" : "\n}";
@@ -274,7 +277,7 @@ Result<SceneDescription> SceneFromJson(std::string_view text, const std::filesys
     try {
         const Json node = Json::parse(text);
         return SceneReader(node, folder).Read();
-    } catch (const Json::parse_error& error) {
+    } catch (const Json::exception& error) {
         return WrongAt("", error.what());
     }
 }

@@ -198,6 +198,7 @@ TEST(SceneFile, ErrorsNameThePath) {
     const std::pair<const char*, const char*> wrong[] = {
         {R"({)", "line 1"},
         {R"([])", "must be an object"},
+        {R"({"fulcrumScene": 1, "dt": 1e2222222})", "1e2222222"},  // beyond a double
         {R"({})", "fulcrumScene: 0"},
         {R"({"fulcrumScene": 2})", "fulcrumScene: 2"},
         {R"({"fulcrumScene": 1, "stepz": 3})", "stepz: an unknown name"},
@@ -227,6 +228,17 @@ TEST(SceneFile, ErrorsNameThePath) {
         ASSERT_FALSE(read) << text;
         EXPECT_NE(read.GetError().message.find(message), std::string::npos) << text << "\n" << read.GetError().message;
     }
+}
+
+// What is no UTF-8 cannot stand in JSON.
+TEST(SceneFile, ANameOfAnyBytesIsWritten) {
+    SceneDescription scene = Everything();
+    scene.bodies[0].name = "a\xff";
+    const Result<std::string> text = SceneToJson(scene);
+    ASSERT_TRUE(text);
+    const Result<SceneDescription> read = SceneFromJson(text.Value());
+    ASSERT_TRUE(read) << read.GetError().message;
+    EXPECT_EQ(read.Value().bodies[0].name, "a\xEF\xBF\xBD");
 }
 
 TEST(SceneFile, ThatCannotBeAddedLeavesNothing) {
