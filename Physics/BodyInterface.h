@@ -44,9 +44,11 @@ public:
     // Errors name the field: NonFinite, NonPositive, Negative, OutOfRange, Unnormalized, Unsupported (no shape; a
     // dynamic body asleep that is not dynamic). Nothing is created then.
     Result<BodyId> Create(const BodySettings& settings);
-    // Creates all bodies of a batch, in its order: the same bodies as one by one, in less time, since they have been
-    // checked and memory is reserved for all of them at once.
-    Result<std::vector<BodyId>> Commit(const BodyBatch& batch);
+    // Creates all bodies of a batch and then all its joints, in its order: the same as one by one, in less time, since
+    // they have been checked and memory is reserved for all of them at once. Errors, of joints to bodies that are not
+    // in the batch: UnknownId, Unsupported (no body of the joint is dynamic; `make` gave no joint type), named as
+    // `joints[2]: ...`. Nothing is created then.
+    Result<BatchIds> Commit(const BodyBatch& batch);
     // Wakes bodies that touched it. Error: UnknownId.
     Status Remove(BodyId id);
     bool Exists(BodyId id) const;
