@@ -1,5 +1,6 @@
 #include <Fulcrum/Assets/SceneFile.h>
 
+#include <Fulcrum/Assets/Json/JsonDepth.h>
 #include <Fulcrum/Assets/Json/JsonWriter.h>
 #include <Fulcrum/Assets/Json/ShapeJson.h>
 #include <Fulcrum/Assets/RagdollJson.h>
@@ -274,6 +275,7 @@ std::string Text(const Json& scene) {
 }  // namespace
 
 Result<SceneDescription> SceneFromJson(std::string_view text, const std::filesystem::path& folder) {
+    if (const MaybeError error = CheckDepthOfJson(text)) return WrongAt("", error->message);
     try {
         const Json node = Json::parse(text);
         return SceneReader(node, folder).Read();
@@ -297,6 +299,7 @@ Result<SceneDescription> ReadScene(const std::filesystem::path& file) {
     const bool isText = first != std::string::npos && bytes[first] == '{';
     Result<SceneDescription> scene = [&]() -> Result<SceneDescription> {
         if (isText) return SceneFromJson(bytes, file.parent_path());
+        if (const MaybeError error = CheckDepthOfCbor(bytes)) return WrongAt("", error->message);
         const Json node = Json::from_cbor(bytes, true, false);
         if (node.is_discarded()) return WrongAt("", "it is neither JSON nor CBOR");
         return SceneReader(node, file.parent_path()).Read();

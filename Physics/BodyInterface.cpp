@@ -486,6 +486,15 @@ bool BodyInterface::IsSensor(BodyId id) const {
     const BodyReading reading(world_, locks_, id);
     return reading && world_.bodies.cold[id.index].isSensor;
 }
+SensorSees BodyInterface::GetSensorSees(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    if (!reading || !world_.sensors.Has(id)) return SensorSees::Nothing;
+    return world_.sensors.sensors[world_.sensors.PlaceOf(id)].sees;
+}
+bool BodyInterface::SensorReportsStay(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading && world_.sensors.Has(id) && world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay;
+}
 bool BodyInterface::IsAwake(BodyId id) const {
     const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);
     return reading && world_.bodies.dynamics[id.index].awake;

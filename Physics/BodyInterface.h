@@ -109,6 +109,7 @@ public:
     Status SetDamping(BodyId id, float linear, float angular);
     Status SetLockedAxes(BodyId id, LockedAxes axes);
     Status SetMaxSpeeds(BodyId id, float linear, float angular);
+    Status SetGyroscopicTorque(BodyId id, bool isOn);
     Status SetUserData(BodyId id, uint64_t userData);
     Status SetAllowSleep(BodyId id, bool allowSleep);  // false wakes the body
     Status SetContinuous(BodyId id,
@@ -176,6 +177,7 @@ public:
     LockedAxes GetLockedAxes(BodyId id) const;
     float GetMaxLinearSpeed(BodyId id) const;
     float GetMaxAngularSpeed(BodyId id) const;
+    bool HasGyroscopicTorque(BodyId id) const;
     bool AllowsSleep(BodyId id) const;
     uint64_t GetCategory(BodyId id) const;
     uint64_t GetMask(BodyId id) const;
@@ -184,6 +186,8 @@ public:
     float GetPenetrationTarget(BodyId id) const;
     bool ReportsContacts(BodyId id) const;
     bool IsSensor(BodyId id) const;
+    SensorSees GetSensorSees(BodyId id) const;  // Nothing if it is no sensor
+    bool SensorReportsStay(BodyId id) const;
     bool IsAwake(BodyId id) const;
     // Whether the body is frozen because its state was not finite: it stays at its last valid pose like a static body,
     // without velocity. SetPose unfreezes it.

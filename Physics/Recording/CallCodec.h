@@ -278,10 +278,14 @@ private:
             isBad_ = true;
             return;
         }
-        values.resize(count);
-        if constexpr (std::is_same_v<T, std::byte>) Raw(values.data(), values.size());
-        else
-            for (T& value : values) Read(value);
+        if constexpr (std::is_same_v<T, std::byte>) {
+            values.resize(count);
+            Raw(values.data(), values.size());
+            return;
+        }
+        // One by one: a damaged number must not ask for more memory than there is.
+        values.clear();
+        while (values.size() < count && !isBad_) Read(values.emplace_back());
     }
     template <class T>
     void ReadObject(const std::vector<T>& objects, T& object) {
