@@ -348,6 +348,7 @@ TEST(WorldThreads, EditCastAndStepAtOnce) {
                     std::vector<BodySettings> bodies;
                     for (int k = 0; k < 5; ++k)
                         bodies.push_back(heap.Settings(random, static_cast<int>(random.Below(1000))));
+                    bodies[0].motion = MotionType::Dynamic;
                     PointJointSettings joint;
                     joint.bodyA = BodyBatch::Body(0);
                     joint.bodyB = BodyBatch::Body(1);
