@@ -1,10 +1,12 @@
 // Reading of RagdollJson.h.
 #include <Fulcrum/Assets/RagdollJson.h>
 
+#include <Fulcrum/Assets/Json/JsonDepth.h>
 #include <Fulcrum/Assets/Json/JsonReader.h>
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 
 namespace fulcrum {
 
@@ -44,10 +46,12 @@ Result<RagdollSettings> RagdollFromJson(const Json& document) {
 Result<RagdollSettings> ReadRagdoll(const std::string& file) {
     std::ifstream stream(file);
     if (!stream) return WrongAt(file, "it cannot be opened");
+    const std::string text((std::istreambuf_iterator<char>(stream)), {});
+    if (const MaybeError error = CheckDepthOfJson(text)) return WrongAt(file, error->message);
     Result<RagdollSettings> settings = Error{ErrorCode::Unsupported, ""};
     try {
-        settings = RagdollFromJson(Json::parse(stream));
-    } catch (const Json::parse_error& error) {
+        settings = RagdollFromJson(Json::parse(text));
+    } catch (const Json::exception& error) {
         return WrongAt(file, error.what());
     }
     if (!settings) return Error{settings.GetError().code, file + ": " + settings.GetError().message};

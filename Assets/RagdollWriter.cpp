@@ -34,7 +34,7 @@ Status WriteRagdoll(const std::string& file, const RagdollSettings& settings) {
     // One part per line.
     const char* before = "{\"parts\": [\n  ";
     for (const Json& part : document.Value()["parts"]) {
-        stream << before << part.dump();
+        stream << before << part.dump(-1, ' ', false, Json::error_handler_t::replace);
         before = ",\n  ";
     }
     stream << "\n]}\n";

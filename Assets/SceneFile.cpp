@@ -1,5 +1,6 @@
 #include <Fulcrum/Assets/SceneFile.h>
 
+#include <Fulcrum/Assets/Json/JsonDepth.h>
 #include <Fulcrum/Assets/Json/JsonWriter.h>
 #include <Fulcrum/Assets/Json/ShapeJson.h>
 #include <Fulcrum/Assets/RagdollJson.h>
@@ -245,22 +246,25 @@ private:
     std::map<const Shape*, Json> shapeOf_;  // what stands in a body's place
 };
 
+// A name that is no UTF-8, as a program or a CBOR file may have it, is written with replacement characters.
+std::string Dump(const Json& node) { return node.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 // One element of the lists a line.
 std::string Text(const Json& scene) {
     std::string text = "{";
     const char* before = "\n";
     for (const auto& [name, node] : scene.items()) {
-        text += before + Json(name).dump() + ": ";
+        text += before + Dump(Json(name)) + ": ";
         before = ",\n";
         const bool isList = node.is_array() || name == "shapes";
         if (!isList || node.empty()) {
-            text += node.dump();
+            text += Dump(node);
             continue;
         }
         text += node.is_array() ? "[" : "{";
         const char* beforeOne = "\n  ";
         for (const auto& [key, element] : node.items()) {
-            text += beforeOne + (node.is_array() ? "" : Json(key).dump() + ": ") + element.dump();
+            text += beforeOne + (node.is_array() ? "" : Dump(Json(key)) + ": ") + Dump(element);
             beforeOne = ",\n  ";
         }
         text += node.is_array() ? "\n]" : "\n}";
@@ -271,10 +275,11 @@ std::string Text(const Json& scene) {
 }  // namespace
 
 Result<SceneDescription> SceneFromJson(std::string_view text, const std::filesystem::path& folder) {
+    if (const MaybeError error = CheckDepthOfJson(text)) return WrongAt("", error->message);
     try {
         const Json node = Json::parse(text);
         return SceneReader(node, folder).Read();
-    } catch (const Json::parse_error& error) {
+    } catch (const Json::exception& error) {
         return WrongAt("", error.what());
     }
 }
@@ -294,6 +299,7 @@ Result<SceneDescription> ReadScene(const std::filesystem::path& file) {
     const bool isText = first != std::string::npos && bytes[first] == '{';
     Result<SceneDescription> scene = [&]() -> Result<SceneDescription> {
         if (isText) return SceneFromJson(bytes, file.parent_path());
+        if (const MaybeError error = CheckDepthOfCbor(bytes)) return WrongAt("", error->message);
         const Json node = Json::from_cbor(bytes, true, false);
         if (node.is_discarded()) return WrongAt("", "it is neither JSON nor CBOR");
         return SceneReader(node, file.parent_path()).Read();

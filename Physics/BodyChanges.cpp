@@ -368,6 +368,15 @@ Status BodyInterface::SetAllowSleep(BodyId id, bool allowSleep) {
     return Done{};
 }
 
+Status BodyInterface::SetGyroscopicTorque(BodyId id, bool isOn) {
+    const WorldChange<&BodyInterface::SetGyroscopicTorque> change(world_, id, isOn);
+    if (change.Refusal()) return *change.Refusal();
+    if (!Exists(id)) return Unknown(id);
+    world_.bodies.dynamics[id.index].gyroscopic = isOn;
+    world_.bodies.UpdateInertia(id.index);
+    return Done{};
+}
+
 float BodyInterface::GetGravityFactor(BodyId id) const {
     const BodyReading reading(world_, locks_, id);
     return reading ? world_.bodies.dynamics[id.index].gravityFactor : 0.0f;
@@ -399,6 +408,10 @@ float BodyInterface::GetMaxAngularSpeed(BodyId id) const {
 uint8_t BodyInterface::GetLayer(BodyId id) const {
     const BodyReading reading(world_, locks_, id);
     return reading ? world_.bodies.dynamics[id.index].layer : uint8_t{0};
+}
+bool BodyInterface::HasGyroscopicTorque(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading && world_.bodies.dynamics[id.index].gyroscopic;
 }
 bool BodyInterface::AllowsSleep(BodyId id) const {
     const BodyReading reading(world_, locks_, id);

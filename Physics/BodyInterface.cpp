@@ -2,6 +2,8 @@
 
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/BodyBatch.h>
+#include <Fulcrum/Physics/JointInterface.h>
+#include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
@@ -159,17 +161,41 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     return change.Created<BodyId>(Add(world_, settings));
 }
 
-Result<std::vector<BodyId>> BodyInterface::Commit(const BodyBatch& batch) {
+Result<BatchIds> BodyInterface::Commit(const BodyBatch& batch) {
     const WorldChange<&BodyInterface::Commit> change(world_, batch);
     if (change.Refusal()) return *change.Refusal();
+    const auto motionOf = [&](BodyId id) {
+        return BodyBatch::IsBody(id) ? batch.Bodies()[BodyBatch::IndexOf(id)].motion : MotionOf(world_, id);
+    };
+    // All that may be refused comes first.
+    std::vector<std::unique_ptr<JointType>> types;
+    types.reserve(batch.Joints().size());
+    for (const BodyBatch::Joint& joint : batch.Joints()) {
+        MaybeError error = CheckJointBodies(CommonOf(joint), motionOf);
+        if (!error) types.push_back(std::visit([](const auto& settings) { return MakeType(settings); }, joint));
+        if (!error && !types.back()) error = Error{ErrorCode::Unsupported, "make: gave no joint type"};
+        if (error) {
+            const auto place = static_cast<size_t>(&joint - batch.Joints().data());
+            return Error{error->code, "joints[" + std::to_string(place) + "]: " + error->message};
+        }
+    }
     size_t colliders = 0;
     for (const BodySettings& settings : batch.Bodies()) colliders += ColliderCountOf(*settings.shape);
     world_.bodies.Reserve(batch.Bodies().size());
     world_.colliders.Reserve(colliders);
-    std::vector<BodyId> ids;
-    ids.reserve(batch.Bodies().size());
-    for (const BodySettings& settings : batch.Bodies()) ids.push_back(Add(world_, settings));
-    return change.Created<std::vector<BodyId>>(std::move(ids));
+    world_.joints.Reserve(batch.Joints().size());
+    BatchIds ids;
+    ids.bodies.reserve(batch.Bodies().size());
+    ids.joints.reserve(batch.Joints().size());
+    for (const BodySettings& settings : batch.Bodies()) ids.bodies.push_back(Add(world_, settings));
+    JointInterface joints(world_);
+    for (size_t i = 0; i < types.size(); ++i) {
+        JointSettings settings = CommonOf(batch.Joints()[i]);
+        for (BodyId* const body : {&settings.bodyA, &settings.bodyB})
+            if (BodyBatch::IsBody(*body)) *body = ids.bodies[BodyBatch::IndexOf(*body)];
+        ids.joints.push_back(joints.Add(settings, std::move(types[i])));
+    }
+    return change.Created<BatchIds>(std::move(ids));
 }
 
 Status BodyInterface::Remove(BodyId id) {
@@ -459,6 +485,15 @@ bool BodyInterface::ReportsContacts(BodyId id) const {
 bool BodyInterface::IsSensor(BodyId id) const {
     const BodyReading reading(world_, locks_, id);
     return reading && world_.bodies.cold[id.index].isSensor;
+}
+SensorSees BodyInterface::GetSensorSees(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    if (!reading || !world_.sensors.Has(id)) return SensorSees::Nothing;
+    return world_.sensors.sensors[world_.sensors.PlaceOf(id)].sees;
+}
+bool BodyInterface::SensorReportsStay(BodyId id) const {
+    const BodyReading reading(world_, locks_, id);
+    return reading && world_.sensors.Has(id) && world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay;
 }
 bool BodyInterface::IsAwake(BodyId id) const {
     const BodyReading reading(world_, locks_, id, WorldLock::Access::Reads);

@@ -44,9 +44,11 @@ public:
     // Errors name the field: NonFinite, NonPositive, Negative, OutOfRange, Unnormalized, Unsupported (no shape; a
     // dynamic body asleep that is not dynamic). Nothing is created then.
     Result<BodyId> Create(const BodySettings& settings);
-    // Creates all bodies of a batch, in its order: the same bodies as one by one, in less time, since they have been
-    // checked and memory is reserved for all of them at once.
-    Result<std::vector<BodyId>> Commit(const BodyBatch& batch);
+    // Creates all bodies of a batch and then all its joints, in its order: the same as one by one, in less time, since
+    // they have been checked and memory is reserved for all of them at once. Errors, of joints to bodies that are not
+    // in the batch: UnknownId, Unsupported (no body of the joint is dynamic; `make` gave no joint type), named as
+    // `joints[2]: ...`. Nothing is created then.
+    Result<BatchIds> Commit(const BodyBatch& batch);
     // Wakes bodies that touched it. Error: UnknownId.
     Status Remove(BodyId id);
     bool Exists(BodyId id) const;
@@ -107,6 +109,7 @@ public:
     Status SetDamping(BodyId id, float linear, float angular);
     Status SetLockedAxes(BodyId id, LockedAxes axes);
     Status SetMaxSpeeds(BodyId id, float linear, float angular);
+    Status SetGyroscopicTorque(BodyId id, bool isOn);
     Status SetUserData(BodyId id, uint64_t userData);
     Status SetAllowSleep(BodyId id, bool allowSleep);  // false wakes the body
     Status SetContinuous(BodyId id,
@@ -174,6 +177,7 @@ public:
     LockedAxes GetLockedAxes(BodyId id) const;
     float GetMaxLinearSpeed(BodyId id) const;
     float GetMaxAngularSpeed(BodyId id) const;
+    bool HasGyroscopicTorque(BodyId id) const;
     bool AllowsSleep(BodyId id) const;
     uint64_t GetCategory(BodyId id) const;
     uint64_t GetMask(BodyId id) const;
@@ -182,6 +186,8 @@ public:
     float GetPenetrationTarget(BodyId id) const;
     bool ReportsContacts(BodyId id) const;
     bool IsSensor(BodyId id) const;
+    SensorSees GetSensorSees(BodyId id) const;  // Nothing if it is no sensor
+    bool SensorReportsStay(BodyId id) const;
     bool IsAwake(BodyId id) const;
     // Whether the body is frozen because its state was not finite: it stays at its last valid pose like a static body,
     // without velocity. SetPose unfreezes it.

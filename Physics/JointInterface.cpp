@@ -20,24 +20,6 @@ Error Unknown(JointId id) {
                                       std::to_string(id.generation) + ")"};
 }
 
-MaybeError CheckBodies(const WorldState& world, const JointSettings& settings) {
-    const auto check = [&](const char* field, BodyId id) -> MaybeError {
-        if (id == kWorldBody || world.bodies.Find(id)) return std::nullopt;
-        return Error{ErrorCode::UnknownId, std::string(field) + ": no body has the id (index " +
-                                               std::to_string(id.index) + ", generation " +
-                                               std::to_string(id.generation) + ")"};
-    };
-    if (MaybeError e = FirstOf(check("bodyA", settings.bodyA), check("bodyB", settings.bodyB))) return e;
-    if (settings.bodyA == settings.bodyB)
-        return Error{ErrorCode::Unsupported, "bodyA and bodyB are the same; a joint needs two bodies"};
-    const auto isDynamic = [&](BodyId id) {
-        return id != kWorldBody && world.bodies.dynamics[id.index].motion == MotionType::Dynamic;
-    };
-    if (!isDynamic(settings.bodyA) && !isDynamic(settings.bodyB))
-        return Error{ErrorCode::Unsupported, "bodyA and bodyB are both not dynamic; a joint needs one that moves"};
-    return std::nullopt;
-}
-
 // A point and a rotation, in the world or in a body's center frame.
 struct Frame {
     Vector3 point;  // m, in the center frame
@@ -175,7 +157,8 @@ template <class Settings>
 Result<JointId> JointInterface::Create(const Settings& settings) {
     const WorldChange<&JointInterface::Create<Settings>> change(world_, settings);
     if (change.Refusal()) return *change.Refusal();
-    if (MaybeError error = CheckBodies(world_, settings)) return *error;
+    const auto motionOf = [&](BodyId id) { return MotionOf(world_, id); };
+    if (MaybeError error = CheckJointBodies(settings, motionOf)) return *error;
     if (MaybeError error = Check(settings)) return *error;
     std::unique_ptr<JointType> type = MakeType(settings);
     if (!type) return Error{ErrorCode::Unsupported, "make: gave no joint type"};

@@ -100,6 +100,8 @@ public:
     void VisitOf(BodyId body, FunctionRef<void(JointId)> visit) const;
 
 private:
+    friend class BodyInterface;  // creates the joints of a batch
+
     JointId Add(const JointSettings& settings, std::unique_ptr<JointType> type);
     AxisControl* ControlOf(JointId id, JointAxis axis) const;
     template <class Change>

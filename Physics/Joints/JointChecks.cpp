@@ -91,6 +91,22 @@ MaybeError CheckBounds(const FieldName& name, const JointLimits& limits, const L
 
 }  // namespace
 
+MaybeError CheckJointBodies(const JointSettings& settings, FunctionRef<std::optional<MotionType>(BodyId)> motionOf) {
+    const std::optional<MotionType> a = motionOf(settings.bodyA), b = motionOf(settings.bodyB);
+    const auto unknown = [](const char* field, BodyId id) {
+        return Error{ErrorCode::UnknownId, std::string(field) + ": no body has the id (index " +
+                                               std::to_string(id.index) + ", generation " +
+                                               std::to_string(id.generation) + ")"};
+    };
+    if (!a) return unknown("bodyA", settings.bodyA);
+    if (!b) return unknown("bodyB", settings.bodyB);
+    if (settings.bodyA == settings.bodyB)
+        return Error{ErrorCode::Unsupported, "bodyA and bodyB are the same; a joint needs two bodies"};
+    if (*a != MotionType::Dynamic && *b != MotionType::Dynamic)
+        return Error{ErrorCode::Unsupported, "bodyA and bodyB are both not dynamic; a joint needs one that moves"};
+    return std::nullopt;
+}
+
 MaybeError CheckBetween(const FieldName& field, double x, double low, double high) {
     if (MaybeError e = CheckNotNaN(field, x)) return e;
     if (x >= low && x <= high) return std::nullopt;

@@ -1,8 +1,9 @@
 // Checks of settings shared by the kinds of joints. Each returns an error with the field's name, its value and the
-// valid range; bodies are checked by JointInterface. Called when a joint is created or changed. Free functions.
+// valid range. Called when a joint is created or changed. Free functions.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AngularControls.h>
+#include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Physics/JointSettings.h>
 #include <Fulcrum/Physics/Validation.h>
 
@@ -20,6 +21,9 @@ private:
     const FieldName* whole_ = nullptr;
     const char* name_;
 };
+
+// The two bodies of a joint. motionOf(id): none if no body has the id.
+MaybeError CheckJointBodies(const JointSettings& settings, FunctionRef<std::optional<MotionType>(BodyId)> motionOf);
 
 // Rotation of an anchor's frame, x along its axis, in the space in which it is given.
 Quaternion RotationOf(const JointAnchor& anchor);

@@ -63,9 +63,28 @@ template <class T>
 struct StoredArgument<std::span<const T>> {
     using Type = std::vector<T>;
 };
+// A batch before it is prepared.
+struct BatchSettings {
+    std::vector<BodySettings> bodies;
+    std::vector<BodyBatch::Joint> joints;
+};
+// Default settings of the kind that has this index.
+inline BodyBatch::Joint JointOfKind(size_t kind) {
+    BodyBatch::Joint joint;
+    [&]<size_t... index>(std::index_sequence<index...>) {
+        ((index == kind ? void(joint.emplace<index>()) : void()), ...);
+    }
+    (std::make_index_sequence<std::variant_size_v<BodyBatch::Joint>>());
+    return joint;
+}
+template <class Archive>
+void Describe(Archive& archive, BatchSettings& batch) {
+    archive.Field("bodies", batch.bodies);
+    archive.Field("joints", batch.joints);
+}
 template <>
 struct StoredArgument<BodyBatch> {
-    using Type = std::vector<BodySettings>;
+    using Type = BatchSettings;
 };
 
 // The numbers that objects have in a recording. 0: null.
@@ -98,7 +117,7 @@ public:
                            std::is_same_v<T, const ContactListener*>)
             Write(objects_.NumberOf(value));
         else if constexpr (std::is_same_v<T, std::shared_ptr<const Path>>) WritePath(value);
-        else if constexpr (std::is_same_v<T, BodyBatch>) WriteAll(value.Bodies());
+        else if constexpr (std::is_same_v<T, BodyBatch>) WriteBatch(value);
         else if constexpr (std::is_same_v<T, SnapshotSources>) WriteSources(value);
         else WriteStructure(value);
     }
@@ -107,6 +126,10 @@ private:
     template <class T>
     void WriteStructure(const T& value) {
         DescribeWhole(*this, const_cast<T&>(value));  // writing changes nothing
+    }
+    void WriteStructure(const BodyBatch::Joint& joint) {
+        Write(static_cast<uint8_t>(joint.index()));
+        std::visit([&](const auto& settings) { Write(settings); }, joint);
     }
     template <class T>
     void WriteStructure(const std::optional<T>& value) {
@@ -131,6 +154,10 @@ private:
         if constexpr (std::is_same_v<T, std::byte>) Raw(values.data(), values.size());
         else
             for (const T& value : values) Write(value);
+    }
+    void WriteBatch(const BodyBatch& batch) {
+        WriteAll(batch.Bodies());
+        WriteAll(batch.Joints());
     }
     void WritePath(const std::shared_ptr<const Path>& path) {
         Write(path != nullptr);
@@ -226,6 +253,13 @@ private:
     void ReadStructure(T& value) {
         DescribeWhole(*this, value);
     }
+    void ReadStructure(BodyBatch::Joint& joint) {
+        const uint8_t kind = Get<uint8_t>();
+        isBad_ |= kind >= std::variant_size_v<BodyBatch::Joint>;
+        if (isBad_) return;
+        joint = JointOfKind(kind);
+        std::visit([&](auto& settings) { Read(settings); }, joint);
+    }
     template <class T>
     void ReadStructure(std::optional<T>& value) {
         value.reset();
@@ -244,10 +278,14 @@ private:
             isBad_ = true;
             return;
         }
-        values.resize(count);
-        if constexpr (std::is_same_v<T, std::byte>) Raw(values.data(), values.size());
-        else
-            for (T& value : values) Read(value);
+        if constexpr (std::is_same_v<T, std::byte>) {
+            values.resize(count);
+            Raw(values.data(), values.size());
+            return;
+        }
+        // One by one: a damaged number must not ask for more memory than there is.
+        values.clear();
+        while (values.size() < count && !isBad_) Read(values.emplace_back());
     }
     template <class T>
     void ReadObject(const std::vector<T>& objects, T& object) {
@@ -323,6 +361,11 @@ private:
     void AddStructure(T*) {
         T value{};
         DescribeWhole(*this, value);
+    }
+    template <class... Kinds>
+    void AddStructure(std::variant<Kinds...>*) {
+        Name("any of");
+        (Add<Kinds>(), ...);
     }
     template <class T>
     void AddStructure(std::optional<T>*) {

@@ -47,6 +47,18 @@ Result<std::shared_ptr<const GroupFilter>> ReadFilter(std::span<const std::byte>
                  "give: ReplaySources::groupFilters"};
 }
 
+// What the call of an entry created; nothing if it was refused.
+CreatedIds CreatedAfter(const CallRecording& recording, size_t entry, const RecordedObjects& objects,
+                        const ReplaySources& sources) {
+    CreatedIds created;
+    if (entry + 1 >= recording.Entries().size()) return created;
+    const CallRecording::Entry& next = recording.Entries()[entry + 1];
+    if (next.kind != EntryKind::Created) return created;
+    CallReader reader(recording.DataOf(next), objects, sources, nullptr);
+    reader.Read(created);
+    return created;
+}
+
 // Whether a call may be made: if not, an error says why, unless it only names what was left out.
 MaybeError CheckRead(const CallReader& reader, const char* name) {
     if (reader.IsBad() || !reader.IsAtEnd()) return DamagedRecording(std::string("the arguments of ") + name);
@@ -81,7 +93,7 @@ CallPlayer::CallPlayer(const CallRecording& recording, const RecordedObjects& ob
     if (!leavesOut) return;
     for (size_t i = 0; i < recording.Entries().size(); ++i) {
         if (recording.Entries()[i].kind != EntryKind::Call) continue;
-        const CreatedIds created = CreatedAfter(i);
+        const CreatedIds created = CreatedAfter(recording, i, objects, sources);
         ids_.allBodies.insert(created.bodies.begin(), created.bodies.end());
         ids_.allJoints.insert(created.joints.begin(), created.joints.end());
     }
@@ -118,16 +130,6 @@ Status CallPlayer::Start(JobSystem* jobs) {
         snapshot, {.shapes = objects_.shapes, .groupFilters = objects_.filters, .makeJoint = sources_.makeJoint});
 }
 
-CreatedIds CallPlayer::CreatedAfter(size_t entry) const {
-    CreatedIds created;
-    if (entry + 1 >= recording_.Entries().size()) return created;
-    const CallRecording::Entry& next = recording_.Entries()[entry + 1];
-    if (next.kind != EntryKind::Created) return created;
-    CallReader reader(recording_.DataOf(next), objects_, sources_, nullptr);
-    reader.Read(created);
-    return created;
-}
-
 void CallPlayer::Note(const PlayedCall& call) {
     const auto note = [](auto& ids, const auto& recorded, const auto& created) {
         for (size_t i = 0; i < std::min(recorded.size(), created.size()); ++i) ids[recorded[i]] = created[i];
@@ -140,7 +142,7 @@ Result<PlayedCall> CallPlayer::Play(size_t entry) {
     const CallRecording::Entry& its = recording_.Entries()[entry];
     const CallRow& row = CallRows()[its.row];
     PlayedCall call;
-    call.recorded = CreatedAfter(entry);
+    call.recorded = CreatedAfter(recording_, entry, objects_, sources_);
     CallReader reader(recording_.DataOf(its), objects_, sources_, leavesOut_ ? &ids_ : nullptr);
     const MaybeError refused = row.play(*system_, reader, call.recorded, call.created);
     if (MaybeError error = CheckRead(reader, row.name)) return *error;
@@ -158,32 +160,52 @@ Result<PlayedCall> CallPlayer::Play(size_t entry) {
     return call;
 }
 
-Result<PlayedCall> CallPlayer::PlayOneOf(size_t entry, size_t body) {
+Result<PlayedCall> CallPlayer::PlayPart(size_t entry, size_t part) {
     const CallRecording::Entry& its = recording_.Entries()[entry];
     PlayedCall call;
-    const CreatedIds all = CreatedAfter(entry);
-    if (body < all.bodies.size()) call.recorded.bodies = {all.bodies[body]};
-    CallReader reader(recording_.DataOf(its), objects_, sources_, &ids_);
-    std::vector<BodySettings> batch;
+    const CreatedIds all = CreatedAfter(recording_, entry, objects_, sources_);
+    CallReader reader(recording_.DataOf(its), objects_, sources_, nullptr);
+    BatchSettings batch;
     reader.Read(batch);
     if (MaybeError error = CheckRead(reader, CallRows()[its.row].name)) return *error;
-    if (body >= batch.size()) return DamagedRecording("a batch of bodies");
-    const Result<BodyId> id = system_->Bodies().Create(batch[body]);
-    call.isDone = static_cast<bool>(id);
-    if (id) call.created.bodies = {id.Value()};
-    else call.error = id.GetError();
+    const size_t joint = part - batch.bodies.size();  // if it is none of the bodies
+    if (batch.bodies.size() != all.bodies.size() || batch.joints.size() != all.joints.size() ||
+        (part >= batch.bodies.size() && joint >= batch.joints.size()))
+        return DamagedRecording("a batch");
+    GiveMakers(batch.joints, all.joints, sources_);
+    const auto take = [&](const auto& created, auto& ids) {
+        call.isDone = static_cast<bool>(created);
+        if (created) ids = {created.Value()};
+        else call.error = created.GetError();
+    };
+    if (part < batch.bodies.size()) {
+        call.recorded.bodies = {all.bodies[part]};
+        take(system_->Bodies().Create(batch.bodies[part]), call.created.bodies);
+    } else {
+        call.recorded.joints = {all.joints[joint]};
+        JointSettings& common = CommonOf(batch.joints[joint]);
+        for (BodyId* const body : {&common.bodyA, &common.bodyB}) {
+            if (BodyBatch::IsBody(*body)) {
+                if (BodyBatch::IndexOf(*body) >= all.bodies.size()) return DamagedRecording("a batch");
+                *body = all.bodies[BodyBatch::IndexOf(*body)];
+            }
+            const auto now = ids_.bodies.find(*body);
+            if (now != ids_.bodies.end()) *body = now->second;
+            else call.isLeftOut |= ids_.allBodies.contains(*body);
+        }
+        if (call.isLeftOut) return call;
+        std::visit([&](const auto& settings) { take(system_->Joints().Create(settings), call.created.joints); },
+                   batch.joints[joint]);
+    }
     Note(call);
     return call;
 }
 
-size_t BodiesOfBatch(const CallRecording& recording, size_t entry, const RecordedObjects& objects) {
+BatchSize SizeOfBatch(const CallRecording& recording, size_t entry, const RecordedObjects& objects) {
     const CallRecording::Entry& its = recording.Entries()[entry];
-    if (its.kind != EntryKind::Call || CallRows()[its.row].tag != BatchTag()) return 0;
-    const ReplaySources none;
-    CallReader reader(recording.DataOf(its), objects, none, nullptr);
-    std::vector<BodySettings> batch;
-    reader.Read(batch);
-    return reader.IsBad() ? 0 : batch.size();
+    if (its.kind != EntryKind::Call || CallRows()[its.row].tag != BatchTag()) return {};
+    const CreatedIds created = CreatedAfter(recording, entry, objects, {});
+    return {created.bodies.size(), created.joints.size()};
 }
 
 }  // namespace fulcrum

@@ -31,11 +31,10 @@ public:
     // Plays the call that is the entry of this number. Errors: Unsupported (it needs a listener that the sources do not
     // have), Degenerate (damaged).
     Result<PlayedCall> Play(size_t entry);
-    // Of a batch of bodies the one of this number alone.
-    Result<PlayedCall> PlayOneOf(size_t entry, size_t body);
+    // Of a batch the part of this number alone, a body or, after those, a joint.
+    Result<PlayedCall> PlayPart(size_t entry, size_t part);
 
 private:
-    CreatedIds CreatedAfter(size_t entry) const;
     void Note(const PlayedCall& call);
 
     const CallRecording& recording_;
@@ -46,7 +45,10 @@ private:
     std::unique_ptr<PhysicsSystem> system_;
 };
 
-// How many bodies a call of a batch has; 0: it is none, or damaged.
-size_t BodiesOfBatch(const CallRecording& recording, size_t entry, const RecordedObjects& objects);
+// How many parts a call that added a batch has; 0: it is none, or was refused, or is damaged.
+struct BatchSize {
+    size_t bodies = 0, joints = 0;
+};
+BatchSize SizeOfBatch(const CallRecording& recording, size_t entry, const RecordedObjects& objects);
 
 }  // namespace fulcrum

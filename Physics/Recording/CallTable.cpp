@@ -29,8 +29,10 @@ struct ArgumentCodec<std::tuple<Argument...>> {
 void Note(const void* value, CreatedIds& created, const BodyId*) {
     created.bodies = {*static_cast<const BodyId*>(value)};
 }
-void Note(const void* value, CreatedIds& created, const std::vector<BodyId>*) {
-    created.bodies = *static_cast<const std::vector<BodyId>*>(value);
+void Note(const void* value, CreatedIds& created, const BatchIds*) {
+    const auto& ids = *static_cast<const BatchIds*>(value);
+    created.bodies = ids.bodies;
+    created.joints = ids.joints;
 }
 void Note(const void* value, CreatedIds& created, const JointId*) {
     created.joints = {*static_cast<const JointId*>(value)};
@@ -48,6 +50,20 @@ BodyInterface& ObjectOf(PhysicsSystem& system, const BodyInterface*) { return sy
 JointInterface& ObjectOf(PhysicsSystem& system, const JointInterface*) { return system.Joints(); }
 template <class Returned, class Class, class... Parameters>
 Class* ClassOf(Returned (Class::*)(Parameters...));
+
+// A user-defined joint gets its type by the id that it had when it was recorded.
+void GiveMaker(CustomJointSettings& settings, JointId recorded, const ReplaySources& sources) {
+    if (sources.makeJoint) settings.make = [&sources, recorded] { return sources.makeJoint(recorded); };
+}
+
+}  // namespace
+
+void GiveMakers(std::span<BodyBatch::Joint> joints, std::span<const JointId> recorded, const ReplaySources& sources) {
+    for (size_t i = 0; i < std::min(joints.size(), recorded.size()); ++i)
+        if (auto* const custom = std::get_if<CustomJointSettings>(&joints[i])) GiveMaker(*custom, recorded[i], sources);
+}
+
+namespace {
 
 // A call whose arguments are there.
 template <auto kFunction, class... Stored>
@@ -72,12 +88,13 @@ MaybeError Play(PhysicsSystem& system, CallReader& reader, [[maybe_unused]] cons
     std::apply([&](auto&... argument) { (reader.Read(argument), ...); }, stored);
     if (reader.IsBad() || !reader.IsAtEnd() || reader.NamesWhatIsMissing() || reader.LacksListener()) return {};
     if constexpr (std::is_same_v<Arguments, std::tuple<BodyBatch>>) {
-        const Result<BodyBatch> batch = BodyBatch::Prepare(std::move(std::get<0>(stored)));
+        BatchSettings& settings = std::get<0>(stored);
+        GiveMakers(settings.joints, recorded.joints, reader.Sources());
+        const Result<BodyBatch> batch = BodyBatch::Prepare(std::move(settings.bodies), std::move(settings.joints));
         if (!batch) return batch.GetError();
         return Call<kFunction>(system, created, batch.Value());
     } else if constexpr (std::is_same_v<Arguments, std::tuple<CustomJointSettings>>) {
-        if (!recorded.joints.empty() && reader.Sources().makeJoint)
-            std::get<0>(stored).make = [&] { return reader.Sources().makeJoint(recorded.joints[0]); };
+        if (!recorded.joints.empty()) GiveMaker(std::get<0>(stored), recorded.joints[0], reader.Sources());
         return Call<kFunction>(system, created, std::get<0>(stored));
     } else {
         return std::apply([&](const auto&... argument) { return Call<kFunction>(system, created, argument...); },

@@ -36,6 +36,9 @@ struct CallRow {
 
 std::span<const CallRow> CallRows();
 
+// Gives the user-defined joints of a batch what makes their types.
+void GiveMakers(std::span<BodyBatch::Joint> joints, std::span<const JointId> recorded, const ReplaySources& sources);
+
 // Rows that need special care.
 const void* StepTag();
 const void* BatchTag();

@@ -47,6 +47,7 @@ inline constexpr std::tuple kPublicCalls{
     PublicCall<&BodyInterface::SetDamping>{"BodyInterface::SetDamping"},
     PublicCall<&BodyInterface::SetLockedAxes>{"BodyInterface::SetLockedAxes"},
     PublicCall<&BodyInterface::SetMaxSpeeds>{"BodyInterface::SetMaxSpeeds"},
+    PublicCall<&BodyInterface::SetGyroscopicTorque>{"BodyInterface::SetGyroscopicTorque"},
     PublicCall<&BodyInterface::SetUserData>{"BodyInterface::SetUserData"},
     PublicCall<&BodyInterface::SetAllowSleep>{"BodyInterface::SetAllowSleep"},
     PublicCall<&BodyInterface::SetContinuous>{"BodyInterface::SetContinuous"},

@@ -11,11 +11,11 @@ namespace fulcrum {
 
 namespace {
 
-// A call, or one body of a batch.
+// A call, or a body or joint of a batch.
 struct ProgramCall {
     static constexpr size_t kWhole = ~size_t{0};
-    size_t entry = 0, body = kWhole;
-    bool isStep = false, creates = false;
+    size_t entry = 0, part = kWhole;
+    bool isStep = false, creates = false, createsBody = false;
 };
 using Program = std::vector<ProgramCall>;
 
@@ -59,10 +59,12 @@ private:
         for (size_t i = 0; i < entries.size(); ++i) {
             if (entries[i].kind != EntryKind::Call) continue;
             const CallRow& row = CallRows()[entries[i].row];
-            const size_t bodies = BodiesOfBatch(recording_, i, objects_);
-            for (size_t body = 0; body < bodies; ++body) program.push_back({i, body, false, true});
-            if (bodies == 0)
-                program.push_back({i, ProgramCall::kWhole, row.tag == StepTag(), row.noteCreated != nullptr});
+            const BatchSize batch = SizeOfBatch(recording_, i, objects_);
+            for (size_t part = 0; part < batch.bodies + batch.joints; ++part)
+                program.push_back({i, part, false, true, part < batch.bodies});
+            if (batch.bodies + batch.joints == 0)
+                program.push_back(
+                    {i, ProgramCall::kWhole, row.tag == StepTag(), row.noteCreated != nullptr, row.tag == CreateTag()});
         }
         return program;
     }
@@ -71,8 +73,7 @@ private:
         ProgramSize size{.calls = program.size()};
         for (const ProgramCall& call : program) {
             size.steps += call.isStep;
-            size.bodies +=
-                call.body != ProgramCall::kWhole || CallRows()[recording_.Entries()[call.entry].row].tag == CreateTag();
+            size.bodies += call.createsBody;
         }
         return size;
     }
@@ -149,9 +150,8 @@ private:
         for (const ProgramCall& call : program) {
             bool isDone = false;
             for (CallPlayer& player : players) {
-                const Result<PlayedCall> played = call.body == ProgramCall::kWhole
-                                                      ? player.Play(call.entry)
-                                                      : player.PlayOneOf(call.entry, call.body);
+                const Result<PlayedCall> played =
+                    call.part == ProgramCall::kWhole ? player.Play(call.entry) : player.PlayPart(call.entry, call.part);
                 if (!played) return played.GetError();
                 isDone |= played.Value().isDone;
             }

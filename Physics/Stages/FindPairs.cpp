@@ -1,6 +1,7 @@
 // Colliders that moved out of their fat bounds search for pairs. Workers collect keys, which are sorted before pairs
 // are created, so the order of pairs depends only on ids, not on threads or the structure of the trees. Existing pairs
-// are mostly recognized by previously overlapping bounds, so the hash table is only used for new ones.
+// are mostly recognized by previously overlapping bounds, and colliders without pairs, as those of new bodies, need no
+// look into the hash table.
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
 #include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
@@ -21,23 +22,39 @@ namespace {
 constexpr uint32_t kMostDeepPairs = 1024;
 constexpr uint32_t kAnyNumber = ~0u;
 
-// Whether two colliders, the first of which has moved, need a pair that is not active, by their bounds.
-bool AskForPair(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other) {
+// What two colliders with overlapping bounds need.
+enum class PairNeed : uint8_t { Nothing, Activation, Creation };
+
+// Of two colliders the first of which has moved.
+PairNeed AskForPair(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other) {
     const Collider &self = view.colliders.colliders[index], &collider = view.colliders.colliders[other];
-    if (collider.previous.Overlaps(self.previous)) return false;  // the pair exists already, or is filtered out
-    if (!MayCollide(view, self.body, collider.body)) return false;
+    // The pair exists already, or is filtered out.
+    if (collider.previous.Overlaps(self.previous)) return PairNeed::Nothing;
+    if (!MayCollide(view, self.body, collider.body)) return PairNeed::Nothing;
     const uint32_t pair = pairs.Find(index, other);
-    return pair == PairStore::kNone ? ListenerAllows(view, self.body, collider.body) : !pairs.active.Contains(pair);
+    if (pair != PairStore::kNone) return pairs.active.Contains(pair) ? PairNeed::Nothing : PairNeed::Activation;
+    return ListenerAllows(view, self.body, collider.body) ? PairNeed::Creation : PairNeed::Nothing;
 }
 
-uint64_t KeyOf(uint32_t a, uint32_t b) { return a < b ? uint64_t(a) << 32 | b : uint64_t(b) << 32 | a; }
+// A pair that is needed, as a number that sorts by its colliders, of which a is the lower one. Indices of colliders
+// have 31 bits: as many would take 128 GB.
+struct NeededPair {
+    uint32_t a, b;
+    bool isNew;
+};
+uint64_t KeyOf(const NeededPair& pair) { return uint64_t{pair.a} << 33 | uint64_t{pair.b} << 1 | pair.isNew; }
+NeededPair PairOf(uint64_t key) {
+    return {static_cast<uint32_t>(key >> 33), static_cast<uint32_t>(key >> 1) & 0x7FFFFFFFu, (key & 1) != 0};
+}
 
 // Records their pair if they need one, until more than mostDeep of the recorded pairs overlap deeply.
 void Consider(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other, uint32_t mostDeep,
               WorkerFindings& findings) {
-    if (findings.deepPairs > mostDeep || !AskForPair(view, pairs, index, other)) return;
+    if (findings.deepPairs > mostDeep) return;
+    const PairNeed need = AskForPair(view, pairs, index, other);
+    if (need == PairNeed::Nothing) return;
     findings.deepPairs += OverlapDeeply(view, index, other);
-    findings.pairs.push_back(KeyOf(index, other));
+    findings.pairs.push_back(KeyOf({std::min(index, other), std::max(index, other), need == PairNeed::Creation}));
 }
 
 // Calls visit(other) for the colliders whose fat bounds overlap those of a collider.
@@ -161,15 +178,14 @@ void ActivatePairs(const BodyStore& bodies, const ColliderStore& colliders, std:
                    PairStore& pairs, Array<uint32_t>& activated, const StepWorkers& workers) {
     // Where many bodies have been added, all of their pairs are: the arrays move once.
     if (!pairs.HasRoomFor(keys.size()))
-        pairs.Reserve(static_cast<size_t>(std::ranges::count_if(keys, [&](uint64_t key) {
-            return pairs.Find(static_cast<uint32_t>(key >> 32), static_cast<uint32_t>(key)) == PairStore::kNone;
-        })));
+        pairs.Reserve(static_cast<size_t>(std::ranges::count_if(keys, [](uint64_t key) { return PairOf(key).isNew; })));
     const std::span<uint32_t> added = workers.scratch.Allocate<uint32_t>(keys.size());
     uint32_t count = 0;
-    for (uint64_t key : keys) {
-        const uint32_t a = static_cast<uint32_t>(key >> 32), b = static_cast<uint32_t>(key);
-        uint32_t index = pairs.Find(a, b);
-        if (index == PairStore::kNone) added[count++] = index = AddPair(bodies, colliders, pairs, a, b);
+    for (size_t i = 0; i < keys.size(); ++i) {
+        if (i > 0 && keys[i] == keys[i - 1]) continue;  // found by both colliders
+        const auto [a, b, isNew] = PairOf(keys[i]);
+        const uint32_t index = isNew ? AddPair(bodies, colliders, pairs, a, b) : pairs.Find(a, b);
+        if (isNew) added[count++] = index;
         if (pairs.active.Insert(index)) activated.push_back(index);
     }
     workers.jobs.ParallelFor(count, 16, [&](JobRange range) {

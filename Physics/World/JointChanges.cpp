@@ -19,6 +19,12 @@ void DropPairs(WorldState& world, const Joint& joint) {
 
 }  // namespace
 
+std::optional<MotionType> MotionOf(const WorldState& world, BodyId id) {
+    if (id == kWorldBody) return MotionType::Static;
+    if (!world.bodies.Find(id)) return std::nullopt;
+    return world.bodies.dynamics[id.index].motion;
+}
+
 void WakeBodiesOf(WorldState& world, const Joint& joint) {
     for (uint32_t body : joint.body) WakeBody(world, body);
 }

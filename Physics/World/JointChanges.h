@@ -3,8 +3,12 @@
 
 #include <Fulcrum/Physics/World/WorldState.h>
 
+#include <optional>
+
 namespace fulcrum {
 
+// Of a body that a joint may have, which the world is, too; none: no body has the id.
+std::optional<MotionType> MotionOf(const WorldState& world, BodyId id);
 void WakeBodiesOf(WorldState& world, const Joint& joint);
 // Sets `enabled` and updates everything that depends on it. The bodies wake.
 void EnableJoint(WorldState& world, uint32_t joint, bool enabled);

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/World/JointStore.h>
 
 #include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 
 #include <algorithm>
 
@@ -27,6 +28,14 @@ uint32_t JointStore::Allocate() {
     gaps[index] = {};
     ++count_;
     return index;
+}
+
+void JointStore::Reserve(size_t more) {
+    const size_t grown = more - std::min(more, free_.size());
+    ReserveMore(joints, grown);
+    ReserveMore(records, grown);
+    ReserveMore(types, grown);
+    ReserveMore(gaps, grown);
 }
 
 void JointStore::Free(uint32_t index) {

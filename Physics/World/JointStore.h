@@ -85,6 +85,7 @@ public:
     uint32_t targetCount = 0;  // joints with an errorTarget
 
     uint32_t Count() const { return count_; }
+    void Reserve(size_t more);  // room for more joints
     uint32_t Allocate();        // an index with default values; exists is set
     void Free(uint32_t index);  // must be neither linked nor colored
     bool Find(JointId id) const {

@@ -16,7 +16,7 @@ uint32_t PairStore::HashOf(uint64_t key) {
 }
 
 uint32_t PairStore::Find(uint32_t colliderA, uint32_t colliderB) const {
-    if (table_.empty()) return kNone;
+    if (!HasAny(colliderA) || !HasAny(colliderB)) return kNone;
     const uint64_t key = Key(colliderA, colliderB);
     const uint32_t mask = static_cast<uint32_t>(table_.size() - 1);
     for (uint32_t i = HashOf(key) & mask;; i = (i + 1) & mask)

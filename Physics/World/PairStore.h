@@ -75,6 +75,7 @@ public:
     // Index of the pair of two colliders, or kNone.
     static constexpr uint32_t kNone = ~0u;
     uint32_t Find(uint32_t colliderA, uint32_t colliderB) const;
+    bool HasAny(uint32_t collider) const { return collider < heads_.size() && heads_[collider] != kNone; }
     uint32_t Add(uint32_t colliderA, uint32_t colliderB);  // must not exist yet
     // So many pairs can be added without moving the others.
     bool HasRoomFor(size_t more) const { return more <= freeCount_ + (pairs.capacity() - pairs.size()); }

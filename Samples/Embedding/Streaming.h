@@ -1,6 +1,6 @@
 // A level in square chunks, of which those near the player exist: a loader thread makes the shapes of a chunk and
-// checks its bodies while the world steps, and the game's thread adds them by one call between two steps. Which chunks
-// exist follows from the player's place and from when the loader has finished.
+// checks its bodies and joints while the world steps, and the game's thread adds them by one call between two steps.
+// Which chunks exist follows from the player's place and from when the loader has finished.
 #pragma once
 
 #include <Fulcrum/Physics/BodyBatch.h>
@@ -27,13 +27,17 @@ struct ChunkPlace {
     friend auto operator<=>(const ChunkPlace&, const ChunkPlace&) = default;
 };
 
+struct ChunkContents {
+    std::vector<BodySettings> bodies;
+    std::vector<BodyBatch::Joint> joints;  // of BodyBatch::Body(0), the first of the bodies, and so on
+};
+
 class ChunkStreamer {
 public:
-    // make(place): the bodies of a chunk, called on the loader thread. size: m, of a chunk's side. reach: chunks with
+    // make(place): the contents of a chunk, called on the loader thread. size: m, of a chunk's side. reach: chunks with
     // places up to this far from the player's exist, in both directions; those one farther are removed. The system must
     // outlive the streamer.
-    ChunkStreamer(PhysicsSystem& system, double size, int reach,
-                  std::function<std::vector<BodySettings>(ChunkPlace)> make)
+    ChunkStreamer(PhysicsSystem& system, double size, int reach, std::function<ChunkContents(ChunkPlace)> make)
         : system_(system), size_(size), reach_(reach), make_(std::move(make)), loader_([this] { Load(); }) {}
     ~ChunkStreamer() {
         {
@@ -62,7 +66,7 @@ public:
             asked_.erase(ready->place);
             if (!ready->batch) return ready->batch.GetError();
             if (!isWithin(ready->place, reach_ + 1)) continue;  // the player is gone: the batch is dropped
-            Result<std::vector<BodyId>> ids = system_.Bodies().Commit(ready->batch.Value());
+            Result<BatchIds> ids = system_.Bodies().Commit(ready->batch.Value());
             if (!ids) return ids.GetError();
             chunks_[ready->place] = std::move(ids.Value());
         }
@@ -71,15 +75,15 @@ public:
                 ++chunk;
                 continue;
             }
-            for (const BodyId id : chunk->second)
+            for (const BodyId id : chunk->second.bodies)  // takes its joints along
                 if (Status removed = system_.Bodies().Remove(id); !removed) return removed;
             chunk = chunks_.erase(chunk);
         }
         return Done{};
     }
 
-    // Those that exist, with their bodies.
-    const std::map<ChunkPlace, std::vector<BodyId>>& Chunks() const { return chunks_; }
+    // Those that exist, with their bodies and joints.
+    const std::map<ChunkPlace, BatchIds>& Chunks() const { return chunks_; }
 
 private:
     struct Ready {
@@ -113,7 +117,8 @@ private:
             const ChunkPlace place = wanted_.front();
             wanted_.pop_front();
             lock.unlock();
-            Result<BodyBatch> batch = BodyBatch::Prepare(make_(place));
+            ChunkContents contents = make_(place);
+            Result<BodyBatch> batch = BodyBatch::Prepare(std::move(contents.bodies), std::move(contents.joints));
             lock.lock();
             ready_.push_back({place, std::move(batch)});
         }
@@ -122,8 +127,8 @@ private:
     PhysicsSystem& system_;
     double size_;
     int reach_;
-    std::function<std::vector<BodySettings>(ChunkPlace)> make_;
-    std::map<ChunkPlace, std::vector<BodyId>> chunks_;
+    std::function<ChunkContents(ChunkPlace)> make_;
+    std::map<ChunkPlace, BatchIds> chunks_;
     std::set<ChunkPlace> asked_;  // the loader makes them, or they wait to be added
     std::mutex mutex_;            // of what follows
     std::condition_variable wake_;

@@ -44,6 +44,11 @@ std::vector<FuzzBytes> SeedsOfRecordings() {
         hinge.bodyA = a;
         hinge.bodyB = b;
         EXPECT_TRUE(world.System().Joints().Create(hinge));
+        SliderJointSettings slider;
+        slider.bodyA = a;
+        slider.bodyB = BodyBatch::Body(1);
+        const BodySettings box{.shape = CubeOf(0.1f), .position = {0, 3, 0}};
+        EXPECT_TRUE(world.Bodies().Commit(BodyBatch::Prepare({box, box}, {slider}).Value()));
         world.Steps(2);
         EXPECT_TRUE(world.Bodies().AddImpulse(a, Vector3(1, 2, 3)));
         EXPECT_TRUE(world.Bodies().SetMaterial(b, {.friction = 0.1f, .restitution = 0.5f}));

@@ -1,8 +1,11 @@
 // What a body is told to be: locked, layered, moved by hand, added, removed, read.
+#include <Fulcrum/Physics/SettingsFields.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace fulcrum::testing {
@@ -237,6 +240,125 @@ TEST(Bodies, AreReadAsTheyWereDescribed) {
     EXPECT_EQ(world.Bodies().GetUserData(id), 42u);
     EXPECT_EQ(world.Bodies().GetShape(id), hull);
     EXPECT_EQ(world.Bodies().GetMotionType(id), MotionType::Dynamic);
+}
+
+// The names of the settings of a body.
+struct NameList {
+    std::set<std::string> names;
+    template <class T>
+    void Field(const char* name, T&) {
+        names.insert(name);
+    }
+    template <class E, class Names>
+    void Choice(const char* name, E&, const Names&) {
+        names.insert(name);
+    }
+};
+
+TEST(Bodies, EachSettingIsReadBackAndCanBeChanged) {
+    TestWorld world;
+    BodyInterface& bodies = world.Bodies();
+    const BodySettings first{.shape = CubeOf(0.5f),
+                             .position = {1, 2, 3},
+                             .rotation = RotationAbout({0, 1, 0}, 0.5),
+                             .linearVelocity = {1, 0, 0},
+                             .angularVelocity = {0, 2, 0},
+                             .mass = 5,
+                             .inertia = {2, 3, 4},
+                             .material = {.friction = 0.3f},
+                             .linearDamping = 0.1f,
+                             .angularDamping = 0.2f,
+                             .gravityFactor = 0.5f,
+                             .lockedAxes = LockedAxes::RotationZ,
+                             .maxLinearSpeed = 20,
+                             .maxAngularSpeed = 30,
+                             .gyroscopicTorque = false,
+                             .allowSleep = false,
+                             .layer = 3,
+                             .category = 4,
+                             .mask = 6,
+                             .group = {nullptr, 7, 8},
+                             .continuous = ContinuousCollision::Linear,
+                             .userData = 9,
+                             .penetrationTarget = 0.01f,
+                             .reportsContacts = false};
+    const BodySettings second{.shape = SphereOf(0.5f),
+                              .motion = MotionType::Kinematic,
+                              .startAsleep = false,
+                              .isSensor = true,
+                              .sensorSees = SensorSees::Dynamic | SensorSees::Static,
+                              .sensorReportsStay = false};
+    const BodyId a = world.Add(first), b = world.Add(second);
+    const BodyId ids[] = {a, b};
+    const BodySettings* const settings[] = {&first, &second};
+    std::set<std::string> read;
+    for (const int k : {0, 1}) {
+        const BodyId id = ids[k];
+        const BodySettings& s = *settings[k];
+        const auto expect = [&](const char* name, bool is) {
+            EXPECT_TRUE(is) << name << " of body " << k;
+            read.insert(name);
+        };
+        expect("shape", bodies.GetShape(id) == s.shape);
+        expect("motion", bodies.GetMotionType(id) == s.motion);
+        expect("position", (bodies.GetPose(id).position - s.position).norm() < 1e-6);
+        expect("rotation", std::abs(bodies.GetPose(id).rotation.y - s.rotation.y) < 1e-6f);
+        expect("linearVelocity", bodies.GetLinearVelocity(id) == s.linearVelocity);
+        expect("angularVelocity", bodies.GetAngularVelocity(id) == s.angularVelocity);
+        expect("mass", std::abs(bodies.GetMass(id) - s.mass) < 1e-5f);
+        expect("inertia", std::abs(bodies.GetInertia(id).yy - s.inertia.y()) < 1e-5f);
+        expect("material", bodies.GetMaterial(id).friction == s.material.friction);
+        expect("linearDamping", bodies.GetLinearDamping(id) == s.linearDamping);
+        expect("angularDamping", bodies.GetAngularDamping(id) == s.angularDamping);
+        expect("gravityFactor", bodies.GetGravityFactor(id) == s.gravityFactor);
+        expect("lockedAxes", bodies.GetLockedAxes(id) == s.lockedAxes);
+        expect("maxLinearSpeed", bodies.GetMaxLinearSpeed(id) == s.maxLinearSpeed);
+        expect("maxAngularSpeed", bodies.GetMaxAngularSpeed(id) == s.maxAngularSpeed);
+        expect("gyroscopicTorque", bodies.HasGyroscopicTorque(id) == s.gyroscopicTorque);
+        expect("allowSleep", bodies.AllowsSleep(id) == s.allowSleep);
+        expect("layer", bodies.GetLayer(id) == s.layer);
+        expect("category", bodies.GetCategory(id) == s.category);
+        expect("mask", bodies.GetMask(id) == s.mask);
+        expect("continuous", bodies.GetContinuous(id) == s.continuous);
+        expect("userData", bodies.GetUserData(id) == s.userData);
+        expect("penetrationTarget", bodies.GetPenetrationTarget(id) == s.penetrationTarget);
+        expect("reportsContacts", bodies.ReportsContacts(id) == s.reportsContacts);
+        expect("isSensor", bodies.IsSensor(id) == s.isSensor);
+        expect("sensorSees", bodies.GetSensorSees(id) == (s.isSensor ? s.sensorSees : SensorSees::Nothing));
+        expect("sensorReportsStay", bodies.SensorReportsStay(id) == (s.isSensor && s.sensorReportsStay));
+        expect("startAsleep", bodies.IsAwake(id) == (!s.startAsleep && s.motion != MotionType::Static));
+        EXPECT_EQ(bodies.GetGroup(id).group, s.group.group);
+    }
+    NameList all;
+    BodySettings any;
+    Describe(all, any);
+    all.names.erase("density");  // read as mass
+    EXPECT_EQ(read, all.names);
+    // Those that have no test of their own.
+    EXPECT_TRUE(bodies.SetGyroscopicTorque(a, true));
+    EXPECT_TRUE(bodies.HasGyroscopicTorque(a));
+    EXPECT_FALSE(bodies.SetGyroscopicTorque({77, 0}, true));
+    EXPECT_TRUE(bodies.SetSensorSees(b, SensorSees::Kinematic));
+    EXPECT_TRUE(bodies.SetSensorReportsStay(b, true));
+    EXPECT_EQ(bodies.GetSensorSees(b), SensorSees::Kinematic);
+    EXPECT_TRUE(bodies.SensorReportsStay(b));
+    EXPECT_TRUE(bodies.SetSensor(b, false));
+    EXPECT_EQ(bodies.GetSensorSees(b), SensorSees::Nothing);
+}
+
+// A spinning plate without gyroscopic torque keeps its angular velocity, with it its angular momentum.
+TEST(Bodies, GyroscopicTorqueMayBeSwitched) {
+    TestWorld world(NoGravity());
+    const Vector3 spin(1, 5, 0.5f);
+    const BodyId plate = world.Add(
+        {.shape = BoxOf(1, 0.1f, 0.5f), .angularVelocity = spin, .gyroscopicTorque = false, .allowSleep = false});
+    world.Steps(30);
+    EXPECT_LT(Length(Vector3(world.Bodies().GetAngularVelocity(plate) - spin)), 1e-4f);
+    ASSERT_TRUE(world.Bodies().SetGyroscopicTorque(plate, true));
+    const Vector3 momentum = world.Bodies().GetAngularMomentum(plate);
+    world.Steps(30);
+    EXPECT_GT(Length(Vector3(world.Bodies().GetAngularVelocity(plate) - spin)), 0.1f);
+    EXPECT_LT(Length(Vector3(world.Bodies().GetAngularMomentum(plate) - momentum)), 0.01f * Length(momentum));
 }
 
 TEST(Bodies, ASlightlyLongRotationIsNormalized) {

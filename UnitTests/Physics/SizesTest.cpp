@@ -44,7 +44,7 @@ BatchTime TimeOfBatch(int count) {
         TestWorld world;
         const BodyBatch batch = BodyBatch::Prepare(Crates(count, MotionType::Dynamic, CubeOf(0.5f))).Value();
         double begin = CpuSeconds();
-        EXPECT_EQ(world.Bodies().Commit(batch).Value().size(), static_cast<size_t>(count));
+        EXPECT_EQ(world.Bodies().Commit(batch).Value().bodies.size(), static_cast<size_t>(count));
         least.batch = std::min(least.batch, CpuSeconds() - begin);
         std::vector<uint32_t> numbers(static_cast<size_t>(count) * 10);
         for (uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i * 2654435761u;
@@ -74,7 +74,7 @@ double TimeOfBallsOn(int statics, int actives) {
     const int side = static_cast<int>(std::ceil(std::sqrt(statics)));
     for (int i = 0; i < actives; ++i)  // a hand's breadth above the crates
         balls[static_cast<size_t>(i)].position = {2.0 * (i % side), 1.35, 2.0 * (i / side)};
-    const std::vector<BodyId> ids = world.Bodies().Commit(BodyBatch::Prepare(std::move(balls)).Value()).Value();
+    const std::vector<BodyId> ids = world.Bodies().Commit(BodyBatch::Prepare(std::move(balls)).Value()).Value().bodies;
     world.Step();
     const double begin = CpuSeconds();
     world.Steps(30);

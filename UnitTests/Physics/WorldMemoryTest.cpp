@@ -187,7 +187,7 @@ TEST(WorldMemory, IsThereWhereTheWorldHasBeenAsFull) {
     int64_t full = 0;
     for (const bool isAgain : {false, true}) {
         const int64_t before = memory.Bytes();
-        const std::vector<BodyId> ids = system->Bodies().Commit(more).Value();
+        const std::vector<BodyId> ids = system->Bodies().Commit(more).Value().bodies;
         // The first time it gets as full as it will be.
         for (int step = 0; step < (isAgain ? 20 : 100); ++step) ASSERT_TRUE(system->Update(kStep));
         if (isAgain) break;

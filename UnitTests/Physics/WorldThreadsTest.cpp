@@ -348,8 +348,13 @@ TEST(WorldThreads, EditCastAndStepAtOnce) {
                     std::vector<BodySettings> bodies;
                     for (int k = 0; k < 5; ++k)
                         bodies.push_back(heap.Settings(random, static_cast<int>(random.Below(1000))));
-                    const BodyBatch batch = BodyBatch::Prepare(std::move(bodies)).Value();
-                    const std::vector<BodyId> ids = system.Bodies().Commit(batch).Value();
+                    bodies[0].motion = MotionType::Dynamic;
+                    PointJointSettings joint;
+                    joint.bodyA = BodyBatch::Body(0);
+                    joint.bodyB = BodyBatch::Body(1);
+                    joint.anchorA.point = bodies[0].position;
+                    const BodyBatch batch = BodyBatch::Prepare(std::move(bodies), {joint}).Value();
+                    const std::vector<BodyId> ids = system.Bodies().Commit(batch).Value().bodies;
                     std::vector<BodyId> old;
                     {
                         const std::lock_guard guard(mutex);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <set>
 
 namespace fulcrum::testing {
 namespace {
@@ -193,6 +194,28 @@ TEST(CoincidentBodies, PlacesInTheBallAreApart) {
             }
         }
     }
+}
+
+// Bodies that disperse do not search among those that move, so that a kinematic body searches for them, too: a pair
+// that both have found is one pair.
+TEST(CoincidentBodies, HaveOneContactEachWithAKinematicBody) {
+    TestWorld world(NoGravity());
+    const ShapePtr ball = SphereOf(0.3f);
+    for (int i = 0; i < 1500; ++i) world.Add({.shape = ball});
+    const BodyId box = world.Add({.shape = CubeOf(0.5f),
+                                  .motion = MotionType::Kinematic,
+                                  .position = {1.5, 0, 0},
+                                  .linearVelocity = {-3, 0, 0}});
+    size_t contacts = 0;
+    for (int step = 0; step < 40; ++step) {
+        world.Step();
+        std::set<BodyId> touching;
+        world.System().VisitContactsOf(box, [&](const ContactView& contact) {
+            ++contacts;
+            EXPECT_TRUE(touching.insert(contact.bodyA).second) << contact.bodyA.index << " in step " << step;
+        });
+    }
+    EXPECT_GT(contacts, 1000u);
 }
 
 TEST(CoincidentBodies, AreTheSameForAnyNumberOfThreads) {

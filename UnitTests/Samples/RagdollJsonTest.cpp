@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <fstream>
 
 #include <unistd.h>
 
@@ -240,6 +241,16 @@ TEST(RagdollJson, FilesComeBackAndTheirErrorsNameThem) {
     ASSERT_FALSE(cut);
     EXPECT_TRUE(cut.GetError().message.starts_with(file)) << cut.GetError().message;
     EXPECT_NE(cut.GetError().message.find("line 2"), std::string::npos) << cut.GetError().message;
+    // A number beyond a double is no file of a ragdoll, but no reason to stop either.
+    std::ofstream(file) << "{\"parts\": [1e2222222]}";
+    const Result<RagdollSettings> huge = ReadRagdoll(file);
+    ASSERT_FALSE(huge);
+    EXPECT_NE(huge.GetError().message.find("1e2222222"), std::string::npos) << huge.GetError().message;
+    // What is no UTF-8 cannot stand in JSON.
+    RagdollSettings odd = Humanoid();
+    odd.parts[0].name = "a\xff";
+    ASSERT_TRUE(WriteRagdoll(file, odd));
+    EXPECT_EQ(ReadRagdoll(file).Value().parts[0].name, "a\xEF\xBF\xBD");
     std::filesystem::remove(file);
     EXPECT_EQ(ReadRagdoll(file).GetError().message, file + ": it cannot be opened");
     EXPECT_FALSE(WriteRagdoll(file + "/no/such/folder", Humanoid()));

@@ -198,6 +198,7 @@ TEST(SceneFile, ErrorsNameThePath) {
     const std::pair<const char*, const char*> wrong[] = {
         {R"({)", "line 1"},
         {R"([])", "must be an object"},
+        {R"({"fulcrumScene": 1, "dt": 1e2222222})", "1e2222222"},  // beyond a double
         {R"({})", "fulcrumScene: 0"},
         {R"({"fulcrumScene": 2})", "fulcrumScene: 2"},
         {R"({"fulcrumScene": 1, "stepz": 3})", "stepz: an unknown name"},
@@ -227,6 +228,44 @@ TEST(SceneFile, ErrorsNameThePath) {
         ASSERT_FALSE(read) << text;
         EXPECT_NE(read.GetError().message.find(message), std::string::npos) << text << "\n" << read.GetError().message;
     }
+}
+
+// Readers call themselves for each level.
+TEST(SceneFile, NestedTooDeepIsRefused) {
+    std::string shape = R"({"kind": "Sphere", "radius": 1})";
+    for (int level = 0; level < 20; ++level) shape = R"({"kind": "Compound", "children": [{"shape": )" + shape + "}]}";
+    EXPECT_TRUE(SceneFromJson(R"({"fulcrumScene": 1, "bodies": [{"shape": )" + shape + "}]}"));
+    std::string before, after;
+    for (int level = 0; level < 100'000; ++level) {
+        before += R"({"kind": "Compound", "children": [{"shape": )";
+        after += "}]}";
+    }
+    const Result<SceneDescription> deep =
+        SceneFromJson(R"({"fulcrumScene": 1, "bodies": [{"shape": )" + before + "3" + after + "}]}");
+    ASSERT_FALSE(deep);
+    EXPECT_NE(deep.GetError().message.find("nested"), std::string::npos) << deep.GetError().message;
+    const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "deep_scene_test.cbor";
+    // An array of one element each, maps of one, arrays without end; strings of which the pieces are strings; tags.
+    const std::pair<char, const char*> heads[] = {{'\x81', "nested"},  {'\xA1', "nested"},  {'\x9F', "nested"},
+                                                  {'\x5F', "unknown"}, {'\x7F', "unknown"}, {'\xC0', "tags"}};
+    for (const auto& [head, message] : heads) {
+        std::ofstream(file, std::ios::binary) << std::string(1'000'000, head);
+        const Result<SceneDescription> binary = ReadScene(file);
+        ASSERT_FALSE(binary);
+        EXPECT_NE(binary.GetError().message.find(message), std::string::npos) << binary.GetError().message;
+    }
+    std::filesystem::remove(file);
+}
+
+// What is no UTF-8 cannot stand in JSON.
+TEST(SceneFile, ANameOfAnyBytesIsWritten) {
+    SceneDescription scene = Everything();
+    scene.bodies[0].name = "a\xff";
+    const Result<std::string> text = SceneToJson(scene);
+    ASSERT_TRUE(text);
+    const Result<SceneDescription> read = SceneFromJson(text.Value());
+    ASSERT_TRUE(read) << read.GetError().message;
+    EXPECT_EQ(read.Value().bodies[0].name, "a\xEF\xBF\xBD");
 }
 
 TEST(SceneFile, ThatCannotBeAddedLeavesNothing) {

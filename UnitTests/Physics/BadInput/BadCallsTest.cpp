@@ -34,8 +34,11 @@ T Good(const Room& room) {
     else if constexpr (std::is_same_v<T, std::optional<JointLimits>>) return JointLimits{.min = -1, .max = 1};
     else if constexpr (std::is_same_v<T, CompoundShape::ChildSettings>) return T{.shape = room.ball};
     else if constexpr (std::is_same_v<T, BodySettings>) return T{.shape = room.ball, .position = {5, 5, 5}};
-    else if constexpr (std::is_same_v<T, std::vector<BodySettings>>) return {2, Good<BodySettings>(room)};
-    else if constexpr (std::is_same_v<T, std::vector<BodyId>>) return {room.body, room.other};
+    else if constexpr (std::is_same_v<T, BatchSettings>) {
+        HingeJointSettings hinge = Good<HingeJointSettings>(room);
+        hinge.bodyB = BodyBatch::Body(1);
+        return {{2, Good<BodySettings>(room)}, {hinge}};
+    } else if constexpr (std::is_same_v<T, std::vector<BodyId>>) return {room.body, room.other};
     else if constexpr (std::is_same_v<T, std::vector<Pose>>) return {Pose{{0, 2, 0}, {}}, Pose{{2, 2, 0}, {}}};
     else if constexpr (std::is_same_v<T, std::vector<std::byte>>) return room.snapshot;
     else if constexpr (std::is_base_of_v<JointSettings, T>) {
@@ -88,10 +91,12 @@ template <auto kFunction, class Argument>
 MaybeError Make(PhysicsSystem& system, const Argument& arguments) {
     auto& object = ObjectOf(system, decltype(ClassOf(kFunction))(nullptr));
     if constexpr (IsSame<kFunction, &BodyInterface::Commit>()) {
-        const Result<BodyBatch> batch = BodyBatch::Prepare(std::get<0>(arguments));
+        const Result<BodyBatch> batch =
+            BodyBatch::Prepare(std::get<0>(arguments).bodies, std::get<0>(arguments).joints);
         if (!batch) return batch.GetError();
-        EXPECT_TRUE(object.Commit(batch.Value()));
-        return {};
+        const Result<BatchIds> ids = object.Commit(batch.Value());
+        if (ids) return {};
+        return ids.GetError();
     } else if constexpr (IsSame<kFunction, &PhysicsSystem::SetContactListener>()) {
         system.SetContactListener(std::get<0>(arguments));
         return {};

@@ -110,6 +110,9 @@ private:
     void VisitStructure(T& value) {
         DescribeIn(value);
     }
+    void VisitStructure(BodyBatch::Joint& joint) {
+        std::visit([&](auto& settings) { Visit(settings); }, joint);
+    }
     template <class T>
     void VisitStructure(std::optional<T>& value) {
         if (value) Visit(*value);

@@ -20,7 +20,7 @@ Bytes LongProgram(bool inABatch) {
             settings.push_back({.shape = i % 2 ? CubeOf(0.2f) : SphereOf(0.2f),
                                 .position = {0.6 * (i % 20), 0.3 + 0.5 * (i % 3), 0.6 * (i / 20)}});
         std::vector<BodyId> bodies;
-        if (inABatch) bodies = world.Bodies().Commit(BodyBatch::Prepare(settings).Value()).Value();
+        if (inABatch) bodies = world.Bodies().Commit(BodyBatch::Prepare(settings).Value()).Value().bodies;
         for (const BodySettings& one : settings)
             if (!inABatch) bodies.push_back(world.Add(one));
         for (size_t i = 0; i + 1 < bodies.size(); i += 10) {
@@ -73,6 +73,42 @@ TEST(Shrink, FindsTheBodyThatIsTooFast) {
         EXPECT_FALSE(replay.Value().divergence);
         EXPECT_GT(fastest, 50);
     }
+}
+
+// Of a batch of pairs, one of them joined to a body outside of it, what breaks is left: its two bodies and its joint.
+TEST(Shrink, FindsTheJointOfABatch) {
+    constexpr uint32_t kPairs = 20, kWeak = 13;
+    TestWorld world;
+    const Bytes bytes = RecordingOf(world.System(), [&] {
+        const BodyId hook = world.Add({.shape = SphereOf(0.2f), .motion = MotionType::Static, .position = {0, 9, 0}});
+        std::vector<BodySettings> bodies;
+        std::vector<BodyBatch::Joint> joints;
+        for (uint32_t i = 0; i < kPairs; ++i) {
+            for (int k = 0; k < 2; ++k) bodies.push_back({.shape = SphereOf(0.2f), .position = {2.0 * i, 5.0 + k, 0}});
+            FixedJointSettings joint;
+            joint.bodyA = i == 0 ? hook : BodyBatch::Body(2 * i);
+            joint.bodyB = BodyBatch::Body(2 * i + 1);
+            joint.breakForce = i == kWeak ? 100 : 1e6f;
+            joints.emplace_back(joint);
+        }
+        const BatchIds ids = world.Bodies().Commit(BodyBatch::Prepare(bodies, joints).Value()).Value();
+        world.Steps(5);
+        for (const BodyId id : ids.bodies)
+            ASSERT_TRUE(world.Bodies().AddImpulse(id, {0, id.index % 2 ? -20.f : 20.f, 0}));
+        world.Steps(20);
+    });
+    const FailureCheck broken = [](std::span<PhysicsSystem* const> worlds) {
+        bool found = false;
+        const JointInterface& joints = worlds[0]->Joints();
+        joints.Visit([&](JointId id) { found |= !joints.IsEnabled(id); });
+        return found;
+    };
+    const Result<ShrinkReport> report = Shrink(Parsed(bytes), broken);
+    ASSERT_TRUE(report) << report.GetError().message;
+    EXPECT_EQ(report.Value().before.bodies, 2 * kPairs + 1u);
+    EXPECT_EQ(report.Value().after.bodies, 2u);
+    EXPECT_EQ(report.Value().after.steps, 1u);
+    EXPECT_LE(report.Value().after.calls, 5u);  // and a joint, a push or two, the step
 }
 
 // Falling to -2 m from 0.3 .. 1.3 m takes time, and no floor: bodies and steps go, but for those of the fall.

@@ -72,10 +72,19 @@ TEST(EditQueue, IsFilledWhileTheWorldSteps) {
     world.AddFloor();
     samples::EditQueue queue;
     std::thread loader([&] {
-        for (int i = 0; i < 100; ++i)
+        for (int i = 0; i < 50; ++i) {
             queue.Add([i](PhysicsSystem& system) {
                 EXPECT_TRUE(system.Bodies().Create({.shape = SphereOf(0.2f), .position = {0.5 * i, 1, 0}}));
             });
+            PointJointSettings joint;
+            joint.bodyA = kWorldBody;
+            joint.bodyB = BodyBatch::Body(0);
+            joint.anchorA.point = {0.5 * i, 4, 0};
+            const Result<BodyBatch> lamp =
+                BodyBatch::Prepare({{.shape = SphereOf(0.1f), .position = {0.5 * i, 3, 0}}}, {joint});
+            ASSERT_TRUE(lamp);
+            queue.Add([lamp](PhysicsSystem& system) { EXPECT_TRUE(system.Bodies().Commit(lamp.Value())); });
+        }
     });
     for (int step = 0; step < 20; ++step) {
         world.Step();
@@ -85,6 +94,7 @@ TEST(EditQueue, IsFilledWhileTheWorldSteps) {
     queue.Apply(world.System());
     world.Step();
     EXPECT_EQ(world.Report().bodies, 101u);
+    EXPECT_EQ(world.Report().joints, 50u);
 }
 
 }  // namespace

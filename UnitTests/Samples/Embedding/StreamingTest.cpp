@@ -13,8 +13,8 @@ using namespace fulcrum::testing;
 
 constexpr double kSize = 16;  // m
 
-// Flat ground at a height that its place gives, with four boxes on it.
-std::vector<BodySettings> ChunkAt(ChunkPlace place) {
+// Flat ground at a height that its place gives, with four boxes on it, and a lamp that hangs above it.
+ChunkContents ChunkAt(ChunkPlace place) {
     const float height = 0.25f * static_cast<float>((place.x & 3) + (place.z & 1));
     const std::vector<float> heights(17 * 17, height);
     const ShapePtr ground = HeightField::Create({.sampleCountX = 17, .sampleCountZ = 17, .heights = heights}).Value();
@@ -23,7 +23,14 @@ std::vector<BodySettings> ChunkAt(ChunkPlace place) {
     const ShapePtr box = CubeOf(0.5f);
     for (int i = 0; i < 4; ++i)
         bodies.push_back({.shape = box, .position = corner + Position(4 + 3.0 * i, double{height} + 0.5, 5)});
-    return bodies;
+    bodies.push_back({.shape = SphereOf(0.2f), .position = corner + Position(8, 3, 8)});
+    DistanceJointSettings rope;
+    rope.bodyA = kWorldBody;
+    rope.bodyB = BodyBatch::Body(static_cast<uint32_t>(bodies.size()) - 1);
+    rope.anchorA.point = corner + Position(8, 4, 8);
+    rope.anchorB = JointAnchor{.point = bodies.back().position};
+    rope.maxDistance = 1;
+    return {std::move(bodies), {rope}};
 }
 
 // Waits for the loader as long as it takes.
@@ -44,18 +51,22 @@ TEST(Streaming, ChunksComeAndGoWithThePlayer) {
         ASSERT_TRUE(streamer.Update({8, 0, 8}));
         world.Step();
     }
-    for (const auto& [place, bodies] : streamer.Chunks())
-        for (size_t i = 1; i < bodies.size(); ++i)
-            EXPECT_NEAR(world.PositionOf(bodies[i]).y(), ChunkAt(place)[i].position.y(), 0.01);
+    for (const auto& [place, ids] : streamer.Chunks()) {
+        ASSERT_EQ(ids.bodies.size(), 6u);
+        ASSERT_EQ(ids.joints.size(), 1u);
+        for (size_t i = 1; i < ids.bodies.size(); ++i)
+            EXPECT_NEAR(world.PositionOf(ids.bodies[i]).y(), ChunkAt(place).bodies[i].position.y(), 0.01);
+    }
     const auto before = streamer.Chunks();
     // Three chunks on: three rows of new ones; those two places away stay, as far as they were there.
     AddAll(streamer, {8 + 3 * kSize, 0, 8}, 9 + 3);
     world.Step();
     size_t stayed = 0;
-    for (const auto& [place, bodies] : before) {
+    for (const auto& [place, ids] : before) {
         const bool isThere = streamer.Chunks().contains(place);
         EXPECT_EQ(isThere, place.x == 1) << place.x << " " << place.z;
-        for (const BodyId id : bodies) EXPECT_EQ(world.Bodies().Exists(id), isThere);
+        for (const BodyId id : ids.bodies) EXPECT_EQ(world.Bodies().Exists(id), isThere);
+        EXPECT_EQ(world.System().Joints().Exists(ids.joints[0]), isThere);
         stayed += isThere;
     }
     EXPECT_EQ(stayed, 3u);
@@ -79,7 +90,7 @@ TEST(Streaming, TheWorldStepsWhileTheLoaderWorks) {
 TEST(Streaming, AWrongChunkIsAnErrorThatNamesTheBody) {
     TestWorld world;
     ChunkStreamer streamer(world.System(), kSize, 0, [](ChunkPlace) {
-        return std::vector<BodySettings>{{.shape = CubeOf(1)}, {.shape = CubeOf(1), .mass = -1}};
+        return ChunkContents{{{.shape = CubeOf(1)}, {.shape = CubeOf(1), .mass = -1}}, {}};
     });
     Status status = Done{};
     while (status && streamer.Chunks().empty()) status = streamer.Update({0, 0, 0});
