@@ -90,7 +90,7 @@ test('the page needs nothing else and complains of nothing', () => {
 
 const run = (cost, error, more = {}) => ({
   us_per_second: cost, traversals_per_second: 2 * cost, errors: { way: error }, self_error: null, blew_up: false, family: 'soft',
-  preset: '', rate: 60, substeps: 4, velocity_iterations: 1, position_iterations: 1, timed_runs: 5, failed_gates: [], ...more,
+  preset: '', rate: 60, substeps: 4, velocity_iterations: 1, position_iterations: 1, timed_runs: 5, failed_conditions: [], ...more,
 });
 
 test('runs that blew up are at the upper edge, exact ones at the lower', () => {
