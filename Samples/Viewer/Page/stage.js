@@ -90,10 +90,10 @@ export class Stage {
     this.scene.add(this.ground);
   }
 
-  // What the subject shows fills the picture, whatever its proportions.
-  frameSubject() {
-    const { center, half, from } = this.subject;
-    const places = this.subject.places ?? cornersOf(center.map((middle, k) => [middle - half[k], middle + half[k]]));
+  // What a subject shows fills the picture, whatever its proportions.
+  frameSubject(subject = this.subject) {
+    const { center, half, from } = subject;
+    const places = subject.places ?? cornersOf(center.map((middle, k) => [middle - half[k], middle + half[k]]));
     const towards = new Vector3(...(from ?? FROM)).normalize();
     const right = new Vector3(0, 1, 0).cross(towards).normalize(), up = new Vector3().crossVectors(towards, right);
     const seen = places.map(([x, y, z, radius]) => {

@@ -51,7 +51,8 @@ function keepOverGround(places, countAtStart, { lower, upper }) {
 
 // { center, half, radius, lowest } in meters, the box of what the picture is about; `places`: [x, y, z, radius], balls that are to be in
 // the picture; `typical`: the radius of a body of middle size; `from`: towards the camera, undefined where the scene does not say.
-export function findSubject(recording, timeline) {
+// `moments`: when the bodies are looked at, parts of the run. The timeline is at its beginning afterwards.
+export function findSubject(recording, timeline, moments = MOMENTS) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
   const moving = recording.movers.filter((body) => motions[body] === 2);
@@ -67,7 +68,7 @@ export function findSubject(recording, timeline) {
     timeline.seek(moment * timeline.lastFrame);
     return bodies.filter((body) => timeline.isThere(body)).map(placeOf);
   };
-  const byMoment = MOMENTS.map(placesAt);
+  const byMoment = moments.map(placesAt);
   timeline.seek(0);
   const places = keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
   const rangesOf = (list) => [0, 1, 2].map((k) => (list.length > 0

@@ -72,6 +72,14 @@ export class Viewer {
     return new Vector3().fromArray(this.timeline.positions, 3 * body);
   }
 
+  // The camera has what is there now in the picture, not what was or will be.
+  frameMoment() {
+    const { frame, lastFrame } = this.timeline;
+    this.stage.frameSubject(findSubject(this.recording, this.timeline, [frame / Math.max(1, lastFrame)]));
+    this.timeline.seek(frame);
+    this.draw();
+  }
+
   setMode(mode) {
     this.mode = MODES.includes(mode) ? mode : 'island';
     document.querySelector(`input[name=color][value=${this.mode}]`).checked = true;
