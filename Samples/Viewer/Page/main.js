@@ -41,6 +41,8 @@ function publish(viewer) {
     get playing() { return viewer.isPlaying; },
     get selected() { return viewer.selected; },
     get mode() { return viewer.mode; },
+    // Of the last picture: draw calls and triangles, with those of the shadows, without those of ambient occlusion.
+    get drawn() { return { calls: stage.renderer.info.render.calls, triangles: stage.renderer.info.render.triangles }; },
     get videoSize() { return viewer.videoSize; },
     seek(frame) { viewer.seek(frame); viewer.drawNow(); },
     play() { viewer.setPlaying(true); },
