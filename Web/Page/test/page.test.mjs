@@ -8,6 +8,7 @@ import { createServer } from 'node:http';
 import test, { after, before } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { load } from '../../Package/src/node.js';
+import { PRESETS, SLIDERS } from '../effort.js';
 
 // The viewer's tests have the browser.
 const { launch, newPage } = await import(pathToFileURL(fileURLToPath(new URL('../../../Samples/Viewer/test/browser.mjs', import.meta.url))));
@@ -151,6 +152,15 @@ test('joints, labels and what a scene draws are shown, and follow the world', { 
   assert.equal(await page.evaluate(() => window.fulcrum.picture.joints.visible), false, 'what was switched off stays off');
   assert.equal(await page.isChecked('#toggles input[value=joints]'), false);
   await page.close();
+});
+
+test('the presets are those of the engine, and the sliders reach them', async () => {
+  const header = await readFile(pathOf('../../../Physics/Settings.h'), 'utf8');
+  const presets = [...header.matchAll(/static constexpr SolverSettings (\w+)\(\) \{[^{}]*return \{(?:\.substeps = (\d+))?\}/g)];
+  const substepsOfDefault = Number(header.match(/int substeps = (\d+);/)[1]);
+  assert.deepEqual(PRESETS.map(({ label, solver }) => [label, solver.substeps]), presets.map(([, name, substeps]) => [name, Number(substeps ?? substepsOfDefault)]));
+  const { places } = SLIDERS.find(({ id }) => id === 'substeps');
+  for (const { solver } of PRESETS) assert.ok(places.includes(solver.substeps), `no place for ${solver.substeps} substeps`);
 });
 
 test('the sliders act', { timeout: 600000 }, async () => {
