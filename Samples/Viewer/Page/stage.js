@@ -18,6 +18,7 @@ const THEMES = {
 const LIGHT_DIRECTION = new Vector3(-0.55, 1, 0.62).normalize();
 const FROM = [0.62, 0.42, 1]; // where the camera is, unless the scene says otherwise
 const MARGIN = 0.9;           // part of the picture that the subject may fill
+const LABELLED = 0.78;        // the same, where labels stand above bodies
 const LEAST_PIXELS = 1.3;     // half the size of the smallest body
 
 function nameOfRenderer(context) {
@@ -100,7 +101,7 @@ export class Stage {
       const place = new Vector3(x - center[0], y - center[1], z - center[2]);
       return [place.dot(right), place.dot(up), place.dot(towards), radius];
     });
-    const tangent = MARGIN * Math.tan((this.camera.fov * Math.PI) / 360), wide = tangent * this.camera.aspect;
+    const tangent = (subject.isLabelled ? LABELLED : MARGIN) * Math.tan((this.camera.fov * Math.PI) / 360), wide = tangent * this.camera.aspect;
     let shiftX = 0, shiftY = 0, distance = 1;
     for (let i = 0; i < 4; ++i) {
       distance = 0;

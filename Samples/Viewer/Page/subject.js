@@ -50,8 +50,9 @@ function keepOverGround(places, countAtStart, { lower, upper }) {
 }
 
 // { center, half, radius, lowest } in meters, the box of what the picture is about; `places`: [x, y, z, radius], balls that are to be in
-// the picture; `typical`: the radius of a body of middle size; `from`: towards the camera, undefined where the scene does not say.
-// `moments`: when the bodies are looked at, parts of the run. The timeline is at its beginning afterwards.
+// the picture; `typical`: the radius of a body of middle size; `from`: towards the camera, undefined where the scene does not say;
+// `isLabelled`: whether room is needed for labels. `moments`: when the bodies are looked at, parts of the run. The timeline is at its
+// beginning afterwards.
 export function findSubject(recording, timeline, moments = MOMENTS) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
@@ -89,13 +90,14 @@ export function findSubject(recording, timeline, moments = MOMENTS) {
   const seen = places.concat(standing, overPulleys);
   let ranges = rangesOf(seen), shown;
   const { lower, upper, from } = recording.view ?? {};
+  const isLabelled = !lower && Object.keys(recording.bodies.names ?? {}).length > 0;
   if (lower) {
     ranges = [0, 1, 2].map((k) => [lower[k], upper[k]]);
     shown = cornersOf(ranges);
   } else {
     shown = seen.filter((place) => ranges.every(([low, high], k) => place[k] + place[3] >= low && place[k] - place[3] <= high));
   }
-  return { ...frame(ranges), lowest: ranges[1][0], places: shown, typical, from };
+  return { ...frame(ranges), lowest: ranges[1][0], places: shown, typical, from, isLabelled };
 }
 
 // The height of a ground without an end that contradicts nothing: that of a floor which nothing falls off, under what is static and
