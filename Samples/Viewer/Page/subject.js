@@ -69,18 +69,24 @@ export function findSubject(recording, timeline, moments = MOMENTS) {
     timeline.seek(moment * timeline.lastFrame);
     return bodies.filter((body) => timeline.isThere(body)).map(placeOf);
   };
-  const byMoment = moments.map(placesAt);
-  timeline.seek(0);
-  const places = keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
+  const placesIn = (list) => {
+    const byMoment = list.map(placesAt);
+    timeline.seek(0);
+    return keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
+  };
+  const places = placesIn(moments);
   const rangesOf = (list) => [0, 1, 2].map((k) => (list.length > 0
     ? rangeOf(list.map((place) => place[k] - place[3]), list.map((place) => place[k] + place[3])) : [0, 0]));
   const frame = (ranges) => {
     const half = ranges.map(([low, high]) => (high - low) / 2);
     return { center: ranges.map(([low, high]) => (low + high) / 2), half, radius: Math.max(1e-3, Math.hypot(...half)) };
   };
-  const mobile = frame(rangesOf(places));
-  const isAmong = (body) => radii[shapes[body]] < mobile.radius &&
-    Math.hypot(...placeOf(body).slice(0, 3).map((x, k) => x - mobile.center[k])) < AMONG * mobile.radius;
+  // What is driven belongs to the run, what is fixed to the moments.
+  const mobile = frame(rangesOf(places)), ofRun = moments === MOMENTS ? mobile : frame(rangesOf(placesIn(MOMENTS)));
+  const isAmong = (body) => {
+    const { center, radius } = motions[body] === 1 ? ofRun : mobile;
+    return radii[shapes[body]] < radius && Math.hypot(...placeOf(body).slice(0, 3).map((x, k) => x - center[k])) < AMONG * radius;
+  };
   const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).flatMap((body) => {
     const lower = new Vector3().setScalar(Infinity), upper = new Vector3().setScalar(-Infinity);
     includeBody(recording, timeline, body, lower, upper);
