@@ -1,8 +1,8 @@
 // Puts the page together: unpacks the recording, shows it as the address says, and gives scripts a handle.
 //
 // The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&color=island&body=7&joints=1&drawings=1&labels=1&contacts=1&
-// normals=1&bounds=1&grid=1&solid=1&theme=dark&loop=1&follow=1&fine=1&occlusion=1&fit=1&bare=1. The frame may be `picture`, the
-// one that the scene chose; `fit`: the camera frames what is there at this moment.
+// normals=1&bounds=1&grid=1&solid=1&theme=dark&loop=1&follow=1&fine=1&occlusion=1&fit=1.2&bare=1. The frame may be `picture`, the
+// one that the scene chose; `fit`: the camera frames what is there at this moment, where the whole run is so many times as large.
 // Scripts and tests use window.fulcrum, which is there once the page is ready.
 import { Controls } from './controls.js';
 import { unpack } from './decode.js';
@@ -28,7 +28,7 @@ function applyAddress(viewer, wanted) {
   if (frame === 'picture') viewer.seek((viewer.recording.view?.picture ?? 0.5) * viewer.timeline.lastFrame);
   else if (frame !== null) viewer.seek(Number(frame));
   else if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.setPlaying(true);
-  if (wanted.get('fit') === '1') viewer.frameMoment();
+  if (Number(wanted.get('fit')) > 0) viewer.frameMoment(Number(wanted.get('fit')));
   if (wanted.get('follow') === '1') viewer.setFollowing(true);
 }
 
