@@ -30,8 +30,8 @@ std::string WhyNoLessError(std::span<const RunRecord> runs) {
         std::snprintf(line, sizeof line, "  %d of %zu settings blew up\n", static_cast<int>(blewUp), runs.size());
         text += line;
     }
-    for (const std::string& gate : best.failedGates)
-        text += "  at the most exact one this does not hold: " + gate + "\n";
+    for (const std::string& condition : best.failedConditions)
+        text += "  at the most exact one this does not hold: " + condition + "\n";
     if (!best.worst.empty()) text += "  the largest error of the most exact one: " + best.worst + "\n";
     // The best run of at most half its cost.
     const RunRecord* cheaper = BestWithin(runs, 0.5 * best.microseconds);

@@ -28,7 +28,7 @@ std::string LineOf(const RunRecord& run) {
     for (const NamedValue& error : run.errors)
         line += (&error == run.errors.data() ? "" : ", ") + Json(error.name).dump() + ": " + Digits(error.value);
     line += "}, \"traversals\": " + Digits(run.traversals);
-    if (!run.failedGates.empty()) line += ", \"failed_gates\": " + Json(run.failedGates).dump();
+    if (!run.failedConditions.empty()) line += ", \"failed_conditions\": " + Json(run.failedConditions).dump();
     return line + "}";
 }
 
@@ -47,10 +47,11 @@ void CompareCost(const RunRecord& run, const std::string& name, const Json& befo
 // One run against that of the baseline.
 void CompareRun(const RunRecord& run, const Json& before, Comparison& comparison) {
     const std::string name = run.scene + ", " + run.setting.Key() + ": ";
-    const Json none = Json::array(), &gates = before.contains("failed_gates") ? before["failed_gates"] : none;
-    for (const std::string& gate : run.failedGates)
-        if (std::find(gates.begin(), gates.end(), Json(gate)) == gates.end())
-            comparison.worse.push_back(name + "fails " + gate);
+    const Json none = Json::array(),
+               &conditions = before.contains("failed_conditions") ? before["failed_conditions"] : none;
+    for (const std::string& condition : run.failedConditions)
+        if (std::find(conditions.begin(), conditions.end(), Json(condition)) == conditions.end())
+            comparison.worse.push_back(name + "fails " + condition);
     CompareCost(run, name, before, comparison);
     const Json& errors = before.at("errors");
     std::set<std::string> found;

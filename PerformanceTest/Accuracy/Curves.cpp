@@ -68,7 +68,7 @@ const RunRecord* CheapestFor(std::span<const RunRecord> runs, double error) {
 const RunRecord* CheapestThatPasses(std::span<const RunRecord> runs) {
     const RunRecord* best = nullptr;
     for (const RunRecord& run : runs)
-        if (!run.blewUp && run.failedGates.empty() && (!best || IsCheaper(run, *best))) best = &run;
+        if (!run.blewUp && run.failedConditions.empty() && (!best || IsCheaper(run, *best))) best = &run;
     return best;
 }
 

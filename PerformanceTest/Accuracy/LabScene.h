@@ -46,7 +46,7 @@ public:
     // A dimensionless result, for the comparison with the finest setting.
     void Observe(double value) { observed.push_back(value); }
     // A condition that must hold: of the scene, or of all (finite poses, bodies within their domain).
-    void Require(bool holds, const std::string& gate);
+    void Require(bool holds, const std::string& condition);
 
     double Dt() const { return setting.Dt(); }
     double Seconds(double full, double quick) const { return isQuick ? quick : full; }
@@ -63,8 +63,8 @@ public:
 
     std::vector<NamedValue> errors, figures;
     std::vector<double> observed;
-    std::vector<std::string> failedGates;  // each once
-    std::string worst;                     // what has the largest error, and when; empty: unknown
+    std::vector<std::string> failedConditions;  // each once
+    std::string worst;                          // what has the largest error, and when; empty: unknown
     Work work;
 };
 

@@ -7,9 +7,9 @@
 
 namespace fulcrum::accuracy {
 
-void LabRun::Require(bool holds, const std::string& gate) {
-    if (!holds && std::find(failedGates.begin(), failedGates.end(), gate) == failedGates.end())
-        failedGates.push_back(gate);
+void LabRun::Require(bool holds, const std::string& condition) {
+    if (!holds && std::find(failedConditions.begin(), failedConditions.end(), condition) == failedConditions.end())
+        failedConditions.push_back(condition);
 }
 
 int LabRun::Steps(double seconds) const { return std::max(1, static_cast<int>(std::lround(seconds * setting.rate))); }

@@ -57,8 +57,9 @@ int ReportSoak(std::span<const RunRecord> runs) {
                     run.microseconds);
         for (const auto* list : {&run.errors, &run.figures})
             for (const NamedValue& each : *list) std::printf("  %s  %.3g\n", each.name.c_str(), each.value);
-        for (const std::string& gate : run.failedGates) std::printf("  does not hold: %s\n", gate.c_str());
-        holds &= run.failedGates.empty();
+        for (const std::string& condition : run.failedConditions)
+            std::printf("  does not hold: %s\n", condition.c_str());
+        holds &= run.failedConditions.empty();
     }
     return holds ? 0 : 1;
 }

@@ -15,7 +15,7 @@ struct LabCommand {
     std::filesystem::path table;           // a document to write the tables into; empty: none
     std::filesystem::path save, baseline;  // of errors, see Baseline.h; empty: none
     RecordingOptions recordings;
-    bool soaks = false;  // --soak: one long run, whose errors and gates are printed
+    bool soaks = false;  // --soak: one long run, whose errors and conditions are printed
     std::string commit;
     std::optional<double> adviseError, adviseBudget;  // a part; ms a frame. One of both: the command advises
     std::string help;                                 // not empty: only help was requested

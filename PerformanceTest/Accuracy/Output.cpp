@@ -70,7 +70,7 @@ std::vector<SceneRuns> ByScene(std::vector<RunRecord> runs) {
 std::string CsvOf(std::span<const SceneRuns> scenes) {
     std::string csv =
         "scene,family,rate_hz,dt_s,substeps,velocity_iterations,position_iterations,preset,error,self_error,blew_up,"
-        "us_per_second,timed_runs,traversals_per_second,seeds,errors,figures,failed_gates\n";
+        "us_per_second,timed_runs,traversals_per_second,seeds,errors,figures,failed_conditions\n";
     const auto named = [](const std::vector<NamedValue>& list) {
         std::vector<std::string> parts;
         for (const NamedValue& each : list) parts.push_back(each.name + "=" + Number(each.value));
@@ -87,7 +87,7 @@ std::string CsvOf(std::span<const SceneRuns> scenes) {
                   std::string(setting.Preset()), Number(run.Error()), Number(run.selfError),
                   std::string(run.blewUp ? "1" : "0"), Number(run.microseconds), std::to_string(run.timedRuns),
                   Number(run.traversals), std::to_string(run.seeds), named(run.errors), named(run.figures),
-                  "\"" + Joined(run.failedGates) + "\""})
+                  "\"" + Joined(run.failedConditions) + "\""})
                 line += (line.empty() ? "" : ",") + cell;
             csv += line + "\n";
         }

@@ -17,7 +17,7 @@ void Describe(const RunRecord& run, const LabScene& scene, Recording& recording)
     recording.description = std::string(scene.what) + "; " + run.setting.Key();
     for (const NamedValue& error : run.errors)
         recording.report.push_back({"Errors", error.name, ShortNumber(error.value)});
-    for (const std::string& gate : run.failedGates) recording.report.push_back({"Fails", gate, ""});
+    for (const std::string& condition : run.failedConditions) recording.report.push_back({"Fails", condition, ""});
     recording.report.push_back({"Cost", "work a second", ShortNumber(run.microseconds) + " us"});
     recording.report.push_back({"Cost", "traversals a second", ShortNumber(run.traversals)});
 }

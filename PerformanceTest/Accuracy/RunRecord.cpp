@@ -107,9 +107,10 @@ RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, b
     }
     double simulated = 0;
     for (const LabRun& run : runs) {
-        for (const std::string& gate : run.failedGates)
-            if (std::find(record.failedGates.begin(), record.failedGates.end(), gate) == record.failedGates.end())
-                record.failedGates.push_back(gate);
+        for (const std::string& condition : run.failedConditions)
+            if (std::find(record.failedConditions.begin(), record.failedConditions.end(), condition) ==
+                record.failedConditions.end())
+                record.failedConditions.push_back(condition);
         record.hash = record.hash * 31 + run.work.hash;
         record.traversals += run.work.traversals;
         simulated += run.work.simulatedSeconds;
@@ -138,7 +139,7 @@ Json ToJson(const RunRecord& record) {
     json["errors"] = ListJson(record.errors);
     json["self_error"] = NumberJson(record.selfError);
     json["blew_up"] = record.blewUp;
-    json["failed_gates"] = record.failedGates;
+    json["failed_conditions"] = record.failedConditions;
     json["figures"] = ListJson(record.figures);
     json["observed"] = Json::array();
     for (const double value : record.observed) json["observed"].push_back(NumberJson(value));
@@ -173,7 +174,7 @@ Result<RunRecord> RecordFromJson(const Json& json) {
         record.errors = ListOf(json.at("errors"));
         record.figures = ListOf(json.at("figures"));
         for (const Json& value : json.at("observed")) record.observed.push_back(NumberOf(value));
-        record.failedGates = json.at("failed_gates").get<std::vector<std::string>>();
+        record.failedConditions = json.at("failed_conditions").get<std::vector<std::string>>();
         record.worst = json.value("worst", "");
         record.blewUp = json.at("blew_up").get<bool>();
         record.seeds = json.at("seeds").get<int>();

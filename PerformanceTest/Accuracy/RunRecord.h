@@ -20,9 +20,9 @@ struct RunRecord {
     Setting setting;
     std::vector<NamedValue> errors, figures;  // medians over the seeds; the first error is the main one
     std::vector<double> observed;
-    std::vector<std::string> failedGates;  // of any seed
-    std::string worst;                     // of the first seed, see LabRun
-    bool blewUp = false;                   // the main error is not finite, or beyond the scene's bound
+    std::vector<std::string> failedConditions;  // of any seed
+    std::string worst;                          // of the first seed, see LabRun
+    bool blewUp = false;                        // the main error is not finite, or beyond the scene's bound
     int seeds = 1;
     uint64_t hash = 0;
     double traversals = 0;    // of constraints per simulated second

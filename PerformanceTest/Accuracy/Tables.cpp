@@ -61,11 +61,13 @@ std::string AccuracyTable(std::span<const SceneRuns> scenes, bool isExtreme) {
         }
         table += CurveCells(each);
         if (isExtreme) {
-            std::string gates;
+            std::string conditions;
             if (const RunRecord* run = PresetOf(each, "balanced"))
-                for (const std::string& gate : run->failedGates) gates += (gates.empty() ? "" : "; ") + gate;
+                for (const std::string& condition : run->failedConditions)
+                    conditions += (conditions.empty() ? "" : "; ") + condition;
             const RunRecord* passing = CheapestThatPasses(each.runs);
-            table += " | " + (passing ? passing->setting.Key() : "none") + " | " + (gates.empty() ? "none" : gates);
+            table += " | " + (passing ? passing->setting.Key() : "none") + " | " +
+                     (conditions.empty() ? "none" : conditions);
         }
         table += " |\n";
     }

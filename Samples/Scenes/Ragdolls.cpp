@@ -28,7 +28,7 @@ extern const Scene kScene{
     .sleeping = false,
     .isClosed = true,
     .accuracyRuns = 8,
-    .view = {.color = ColorMode::Plain, .lower = {-8, 4, -8}, .upper = {8, 11, 8}, .picture = 0.25},
+    .view = {.color = ColorMode::Plain, .lower = {-8, 4, -8}, .upper = {8, 17, 8}, .picture = 0.25},
     .build = Build,
     .accuracy = LargestJointGap,
     .accuracyMeaning = "largest distance between the two anchors of a joint",

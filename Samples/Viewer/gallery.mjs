@@ -24,7 +24,7 @@ async function pictureOf(browser, scene) {
   const complaints = [];
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('console', (message) => message.type() === 'error' && complaints.push(message.text()));
-  await page.goto(`${pathToFileURL(resolve(html))}#bare=1&frame=picture&occlusion=1`);
+  await page.goto(`${pathToFileURL(resolve(html))}#bare=1&frame=picture&fit=1.2&occlusion=1`);
   await page.waitForFunction(() => window.fulcrum || document.getElementById('message').textContent.startsWith('This recording cannot'));
   await page.evaluate(() => window.fulcrum?.settle());
   const image = await page.screenshot({ type: 'png', timeout: LONGEST_LOAD });

@@ -32,7 +32,7 @@ protected:
 };
 
 TEST_F(Baseline, OfTheSameRunsIsTheSame) {
-    runs_[1].failedGates = {"finite poses"};
+    runs_[1].failedConditions = {"finite poses"};
     runs_[2].errors[0].value = kNaN;
     const Comparison same = After([](auto&) {});
     EXPECT_TRUE(same.worse.empty());
@@ -74,7 +74,7 @@ TEST_F(Baseline, FailsWhereARunTakesATenthMoreWork) {
 
 TEST_F(Baseline, FailsWhereARunBlowsUpFailsAGateOrIsMissing) {
     EXPECT_EQ(After([](auto& runs) { runs[0].errors[0].value = kNaN; }).worse.size(), 1u);
-    EXPECT_EQ(After([](auto& runs) { runs[0].failedGates.push_back("finite poses"); }).worse.size(), 1u);
+    EXPECT_EQ(After([](auto& runs) { runs[0].failedConditions.push_back("finite poses"); }).worse.size(), 1u);
     EXPECT_EQ(After([](auto& runs) { runs[0].errors.pop_back(); }).worse.size(), 1u);
     EXPECT_EQ(After([](auto& runs) { runs[0].errors.push_back({"gap", 0}); }).worse.size(), 1u);
     EXPECT_EQ(After([](auto& runs) { runs.erase(runs.begin()); }).worse.size(), 1u);

@@ -70,7 +70,7 @@ TEST(Curves, CostsOfAccuracy) {
     EXPECT_EQ(BestWithin(Runs(), 250), &Runs()[2]);
     EXPECT_EQ(BestWithin(Runs(), 60), nullptr);
     std::vector<RunRecord> gated(Runs());
-    for (const size_t i : {size_t{0}, size_t{2}, size_t{3}}) gated[i].failedGates = {"stands"};
+    for (const size_t i : {size_t{0}, size_t{2}, size_t{3}}) gated[i].failedConditions = {"stands"};
     EXPECT_EQ(CheapestThatPasses(gated), &gated[1]);
     EXPECT_EQ(FindPreset(Runs(), "balanced"), &Runs()[0]);
     EXPECT_EQ(FindPreset(Runs(), "fast"), nullptr);

@@ -49,7 +49,7 @@ TEST_P(ExtremeSettings, KeepWhatNoEffortMayBreak) {
         LabRun one(setting, scene.parameter, true, 1), other(setting, scene.parameter, true, 1, &two);
         scene.run(one);
         scene.run(other);
-        for (const std::string& gate : one.failedGates)
+        for (const std::string& gate : one.failedConditions)
             EXPECT_TRUE(DependsOnEffort(gate)) << setting.Key() << ": " << gate;
         EXPECT_EQ(one.work.hash, other.work.hash) << setting.Key();
         ASSERT_EQ(one.observed.size(), other.observed.size()) << setting.Key();

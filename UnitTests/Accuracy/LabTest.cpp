@@ -115,7 +115,7 @@ TEST(Measure, TakesMediansOverTheSeedsAndTheGatesOfAny) {
     EXPECT_EQ(record.Error(), 3);
     EXPECT_EQ(record.figures[0].value, 1);
     EXPECT_EQ(record.observed, std::vector<double>{10});
-    EXPECT_EQ(record.failedGates, std::vector<std::string>{"holds"});
+    EXPECT_EQ(record.failedConditions, std::vector<std::string>{"holds"});
     EXPECT_FALSE(record.blewUp);
     EXPECT_EQ(record.seeds, 3);
     EXPECT_EQ(record.traversals, 50);
@@ -138,7 +138,7 @@ TEST(RunRecord, SurvivesItsFile) {
                    .family = Family::Baumgarte};
     run.errors = {{"way", kNaN}, {"speed", 0.125}};
     run.observed = {1, kNaN};
-    run.failedGates = {"every pose is finite"};
+    run.failedConditions = {"every pose is finite"};
     run.blewUp = true;
     run.hash = 0xFFFFFFFFFFFFFFFFull;
     const nlohmann::ordered_json json = ToJson(run);

@@ -31,7 +31,7 @@ TEST_P(LabSceneTest, IsExactAtTheFinestQuickSetting) {
     for (const NamedValue& error : run.errors) EXPECT_GE(error.value, 0) << error.name;
     EXPECT_FALSE(run.observed.empty());
     for (const double value : run.observed) EXPECT_TRUE(std::isfinite(value));
-    for (const std::string& gate : run.failedGates) EXPECT_NE(gate, "every pose is finite");
+    for (const std::string& gate : run.failedConditions) EXPECT_NE(gate, "every pose is finite");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LabSceneTest, testing::ValuesIn(AllLabScenes()), TestName);

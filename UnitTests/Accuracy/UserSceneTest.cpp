@@ -134,7 +134,7 @@ TEST_F(UserScene, OfTheSamplesErrsLessWithMoreSubsteps) {
     ASSERT_EQ(runs.size(), 3u);
     EXPECT_GT(runs[0].Error(), runs[1].Error());
     EXPECT_GT(runs[1].Error(), runs[2].Error());
-    for (const RunRecord& run : runs) EXPECT_TRUE(run.failedGates.empty());
+    for (const RunRecord& run : runs) EXPECT_TRUE(run.failedConditions.empty());
 }
 
 TEST_F(UserScene, ThatCannotBeReadIsAnError) {

@@ -8,7 +8,7 @@ const geometric = (first, last, count) =>
 
 // `of` and `into`: from and to settings; a slider's places are the values that it can have.
 export const SLIDERS = [
-  { id: 'substeps', label: 'Substeps', places: [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64], text: String,
+  { id: 'substeps', label: 'Substeps', places: [1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 255], text: String,
     of: (s) => s.solver.substeps, into: (value) => ({ solver: { substeps: value } }) },
   { id: 'velocity', label: 'Velocity iterations', places: [1, 2, 3, 4, 6, 8, 12, 16], text: String,
     of: (s) => s.solver.velocityIterations, into: (value) => ({ solver: { velocityIterations: value } }) },
@@ -21,11 +21,12 @@ export const SLIDERS = [
     of: (s) => s.accuracy.jointError, into: (value) => ({ accuracy: { jointError: value } }) },
 ];
 
+// Those of Physics/Settings.h.
 export const PRESETS = [
   { label: 'Fast', solver: { substeps: 2, velocityIterations: 1, positionIterations: 1 } },
   { label: 'Balanced', solver: { substeps: 4, velocityIterations: 1, positionIterations: 1 } },
   { label: 'Accurate', solver: { substeps: 16, velocityIterations: 1, positionIterations: 1 } },
-  { label: 'Reference', solver: { substeps: 64, velocityIterations: 1, positionIterations: 1 } },
+  { label: 'Reference', solver: { substeps: 128, velocityIterations: 1, positionIterations: 1 } },
 ];
 
 export function nearestPlace(places, value) {

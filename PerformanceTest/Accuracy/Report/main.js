@@ -78,12 +78,12 @@ function draw(card, scene) {
 function makeCard(scene) {
   const metrics = Object.keys(scene.runs[0].errors);
   const choice = element('select', metrics.map((name) => element('option', name, { value: name })), { className: 'metric', ariaLabel: 'Metric' });
-  const gates = scene.is_extreme ? scene.runs.find(({ preset }) => preset === 'balanced')?.failed_gates ?? [] : [];
+  const conditions = scene.is_extreme ? scene.runs.find(({ preset }) => preset === 'balanced')?.failed_conditions ?? [] : [];
   const card = element('section', [
     element('div', [element('h2', scene.name), choice], { className: 'top' }),
     element('p', scene.what),
     element('p', '', { className: 'what-error' }),
-    gates.length > 0 ? element('p', `The default fails: ${gates.join('; ')}`, { className: 'failed' }) : '',
+    conditions.length > 0 ? element('p', `The default fails: ${conditions.join('; ')}`, { className: 'failed' }) : '',
     element('div', '', { className: 'plot' }),
   ], { className: 'scene', id: scene.name });
   choice.addEventListener('change', () => draw(card, scene));

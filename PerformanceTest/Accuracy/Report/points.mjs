@@ -18,7 +18,7 @@ function titleOf(run, metric) {
     `${number(run.us_per_second)} µs a second (of ${run.timed_runs})`,
     `${number(run.traversals_per_second)} traversals a second`,
   ];
-  if (run.failed_gates.length > 0) lines.push(`fails: ${run.failed_gates.join('; ')}`);
+  if (run.failed_conditions.length > 0) lines.push(`fails: ${run.failed_conditions.join('; ')}`);
   lines.push(run.recording ? 'click: plays its recording' : `to record it: --record "${run.setting}"`);
   return lines.join('\n');
 }

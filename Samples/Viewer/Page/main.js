@@ -1,8 +1,8 @@
 // Puts the page together: unpacks the recording, shows it as the address says, and gives scripts a handle.
 //
 // The address may say what to show: #frame=120&camera=x,y,z,tx,ty,tz&color=island&body=7&joints=1&drawings=1&labels=1&contacts=1&
-// normals=1&bounds=1&grid=1&solid=1&theme=dark&loop=1&follow=1&fine=1&occlusion=1&bare=1. The frame may be `picture`, the one that the
-// scene chose.
+// normals=1&bounds=1&grid=1&solid=1&theme=dark&loop=1&follow=1&fine=1&occlusion=1&fit=1.2&bare=1. The frame may be `picture`, the
+// one that the scene chose; `fit`: the camera frames what is there at this moment, where the whole run is so many times as large.
 // Scripts and tests use window.fulcrum, which is there once the page is ready.
 import { Controls } from './controls.js';
 import { unpack } from './decode.js';
@@ -28,6 +28,7 @@ function applyAddress(viewer, wanted) {
   if (frame === 'picture') viewer.seek((viewer.recording.view?.picture ?? 0.5) * viewer.timeline.lastFrame);
   else if (frame !== null) viewer.seek(Number(frame));
   else if (!matchMedia('(prefers-reduced-motion: reduce)').matches) viewer.setPlaying(true);
+  if (Number(wanted.get('fit')) > 0) viewer.frameMoment(Number(wanted.get('fit')));
   if (wanted.get('follow') === '1') viewer.setFollowing(true);
 }
 
@@ -40,6 +41,8 @@ function publish(viewer) {
     get playing() { return viewer.isPlaying; },
     get selected() { return viewer.selected; },
     get mode() { return viewer.mode; },
+    // Of the last picture: draw calls and triangles, with those of the shadows, without those of ambient occlusion.
+    get drawn() { return { calls: stage.renderer.info.render.calls, triangles: stage.renderer.info.render.triangles }; },
     get videoSize() { return viewer.videoSize; },
     seek(frame) { viewer.seek(frame); viewer.drawNow(); },
     play() { viewer.setPlaying(true); },
@@ -53,6 +56,7 @@ function publish(viewer) {
     // Where a place of the world is in the picture: -1 .. 1 from left to right and from below to above.
     project(x, y, z) { return stage.project(x, y, z); },
     subject: stage.subject,
+    fit() { viewer.frameMoment(); viewer.drawNow(); },
     settle() { viewer.drawNow(); },
   };
 }

@@ -18,6 +18,7 @@ const THEMES = {
 const LIGHT_DIRECTION = new Vector3(-0.55, 1, 0.62).normalize();
 const FROM = [0.62, 0.42, 1]; // where the camera is, unless the scene says otherwise
 const MARGIN = 0.9;           // part of the picture that the subject may fill
+const LABELLED = 0.78;        // of its height, where labels stand above bodies
 const LEAST_PIXELS = 1.3;     // half the size of the smallest body
 
 function nameOfRenderer(context) {
@@ -90,17 +91,18 @@ export class Stage {
     this.scene.add(this.ground);
   }
 
-  // What the subject shows fills the picture, whatever its proportions.
-  frameSubject() {
-    const { center, half, from } = this.subject;
-    const places = this.subject.places ?? cornersOf(center.map((middle, k) => [middle - half[k], middle + half[k]]));
+  // What a subject shows fills the picture, whatever its proportions.
+  frameSubject(subject = this.subject) {
+    const { center, half, from } = subject;
+    const places = subject.places ?? cornersOf(center.map((middle, k) => [middle - half[k], middle + half[k]]));
     const towards = new Vector3(...(from ?? FROM)).normalize();
     const right = new Vector3(0, 1, 0).cross(towards).normalize(), up = new Vector3().crossVectors(towards, right);
     const seen = places.map(([x, y, z, radius]) => {
       const place = new Vector3(x - center[0], y - center[1], z - center[2]);
       return [place.dot(right), place.dot(up), place.dot(towards), radius];
     });
-    const tangent = MARGIN * Math.tan((this.camera.fov * Math.PI) / 360), wide = tangent * this.camera.aspect;
+    const whole = Math.tan((this.camera.fov * Math.PI) / 360);
+    const tangent = (subject.isLabelled ? LABELLED : MARGIN) * whole, wide = MARGIN * whole * this.camera.aspect;
     let shiftX = 0, shiftY = 0, distance = 1;
     for (let i = 0; i < 4; ++i) {
       distance = 0;

@@ -50,8 +50,10 @@ function keepOverGround(places, countAtStart, { lower, upper }) {
 }
 
 // { center, half, radius, lowest } in meters, the box of what the picture is about; `places`: [x, y, z, radius], balls that are to be in
-// the picture; `typical`: the radius of a body of middle size; `from`: towards the camera, undefined where the scene does not say.
-export function findSubject(recording, timeline) {
+// the picture; `typical`: the radius of a body of middle size; `from`: towards the camera, undefined where the scene does not say;
+// `isLabelled`: whether room is needed for labels. `moments`: when the bodies are looked at, parts of the run. The timeline is at its
+// beginning afterwards.
+export function findSubject(recording, timeline, moments = MOMENTS) {
   const { motions, shapes } = recording.bodies;
   const dynamic = [...motions.keys()].filter((body) => motions[body] === 2);
   const moving = recording.movers.filter((body) => motions[body] === 2);
@@ -67,18 +69,24 @@ export function findSubject(recording, timeline) {
     timeline.seek(moment * timeline.lastFrame);
     return bodies.filter((body) => timeline.isThere(body)).map(placeOf);
   };
-  const byMoment = MOMENTS.map(placesAt);
-  timeline.seek(0);
-  const places = keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
+  const placesIn = (list) => {
+    const byMoment = list.map(placesAt);
+    timeline.seek(0);
+    return keepOverGround(byMoment.flat(), byMoment[0].length, boundsOfGround(recording, timeline));
+  };
+  const places = placesIn(moments);
   const rangesOf = (list) => [0, 1, 2].map((k) => (list.length > 0
     ? rangeOf(list.map((place) => place[k] - place[3]), list.map((place) => place[k] + place[3])) : [0, 0]));
   const frame = (ranges) => {
     const half = ranges.map(([low, high]) => (high - low) / 2);
     return { center: ranges.map(([low, high]) => (low + high) / 2), half, radius: Math.max(1e-3, Math.hypot(...half)) };
   };
-  const mobile = frame(rangesOf(places));
-  const isAmong = (body) => radii[shapes[body]] < mobile.radius &&
-    Math.hypot(...placeOf(body).slice(0, 3).map((x, k) => x - mobile.center[k])) < AMONG * mobile.radius;
+  // What is driven belongs to the run, what is fixed to the moments.
+  const mobile = frame(rangesOf(places)), ofRun = moments === MOMENTS ? mobile : frame(rangesOf(placesIn(MOMENTS)));
+  const isAmong = (body) => {
+    const { center, radius } = motions[body] === 1 ? ofRun : mobile;
+    return radii[shapes[body]] < radius && Math.hypot(...placeOf(body).slice(0, 3).map((x, k) => x - center[k])) < AMONG * radius;
+  };
   const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).flatMap((body) => {
     const lower = new Vector3().setScalar(Infinity), upper = new Vector3().setScalar(-Infinity);
     includeBody(recording, timeline, body, lower, upper);
@@ -88,13 +96,14 @@ export function findSubject(recording, timeline) {
   const seen = places.concat(standing, overPulleys);
   let ranges = rangesOf(seen), shown;
   const { lower, upper, from } = recording.view ?? {};
+  const isLabelled = !lower && Object.keys(recording.bodies.names ?? {}).length > 0;
   if (lower) {
     ranges = [0, 1, 2].map((k) => [lower[k], upper[k]]);
     shown = cornersOf(ranges);
   } else {
     shown = seen.filter((place) => ranges.every(([low, high], k) => place[k] + place[3] >= low && place[k] - place[3] <= high));
   }
-  return { ...frame(ranges), lowest: ranges[1][0], places: shown, typical, from };
+  return { ...frame(ranges), lowest: ranges[1][0], places: shown, typical, from, isLabelled };
 }
 
 // The height of a ground without an end that contradicts nothing: that of a floor which nothing falls off, under what is static and

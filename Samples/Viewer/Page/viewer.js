@@ -72,6 +72,18 @@ export class Viewer {
     return new Vector3().fromArray(this.timeline.positions, 3 * body);
   }
 
+  // The camera has what is there now in the picture, not what was or will be, where the whole run is at least `least` times as large; not
+  // where it goes with a body.
+  frameMoment(least = 1) {
+    if (this.isFollowing) return;
+    const { frame, lastFrame } = this.timeline;
+    const now = findSubject(this.recording, this.timeline, [frame / Math.max(1, lastFrame)]);
+    this.timeline.seek(frame);
+    if (this.stage.subject.radius < least * now.radius) return;
+    this.stage.frameSubject(now);
+    this.draw();
+  }
+
   setMode(mode) {
     this.mode = MODES.includes(mode) ? mode : 'island';
     document.querySelector(`input[name=color][value=${this.mode}]`).checked = true;

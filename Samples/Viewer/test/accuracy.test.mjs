@@ -6,7 +6,7 @@ import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { drawnOf, envelopeOf, labelsOf } from '../../../PerformanceTest/Accuracy/Report/points.mjs';
-import { launch } from './browser.mjs';
+import { launch, newPage } from './browser.mjs';
 import { html } from './recording.mjs';
 
 const report = join(dirname(html), 'accuracy', 'report.html');
@@ -16,7 +16,7 @@ let browser, page;
 const complaints = [], requests = [];
 before(async () => {
   browser = await launch();
-  page = await browser.newPage({ viewport: { width: 1320, height: 900 } });
+  page = await newPage(browser, { viewport: { width: 1320, height: 900 } });
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('request', (request) => requests.push(request.url()));
@@ -67,7 +67,7 @@ test('a run that was recorded is played by a click, others say how to record the
   const links = plotOf('incline.slide').locator('.recordings a');
   assert.equal(await links.count(), 1);
   const [played] = await Promise.all([page.waitForEvent('popup'), links.click()]);
-  await played.waitForFunction(() => window.fulcrum, null, { timeout: 120000 });
+  await played.waitForFunction(() => window.fulcrum);
   assert.match(played.url(), /accuracy\/recordings\/incline\.slide_soft_1-60_4_1_1\.html$/);
   assert.match(await played.textContent('body'), /incline\.slide/);
   await played.close();
@@ -90,7 +90,7 @@ test('the page needs nothing else and complains of nothing', () => {
 
 const run = (cost, error, more = {}) => ({
   us_per_second: cost, traversals_per_second: 2 * cost, errors: { way: error }, self_error: null, blew_up: false, family: 'soft',
-  preset: '', rate: 60, substeps: 4, velocity_iterations: 1, position_iterations: 1, timed_runs: 5, failed_gates: [], ...more,
+  preset: '', rate: 60, substeps: 4, velocity_iterations: 1, position_iterations: 1, timed_runs: 5, failed_conditions: [], ...more,
 });
 
 test('runs that blew up are at the upper edge, exact ones at the lower', () => {

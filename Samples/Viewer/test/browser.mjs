@@ -8,17 +8,26 @@ const ARGUMENTS = [
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
 ];
 
+// ms; waits end with what they wait for: only a page that hangs takes as long, not one that software draws on a busy machine.
+const LONGEST_WAIT = 600000;
+
 export const launch = () => chromium.launch({ executablePath: process.env.CHROMIUM || '/usr/bin/chromium', args: ARGUMENTS });
+
+export async function newPage(browser, options) {
+  const page = await browser.newPage(options);
+  page.context().setDefaultTimeout(LONGEST_WAIT);
+  return page;
+}
 
 // The page of a recording, at its first frame. What it complains of and what it asks for are added to the two lists. `settings`: more
 // of its address.
 export async function openPage(browser, html, complaints = [], requests = [], settings = '') {
-  const page = await browser.newPage({ viewport: { width: 640, height: 360 } }); // small: software draws it
+  const page = await newPage(browser, { viewport: { width: 640, height: 360 } }); // small: software draws it
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('request', (request) => requests.push(request.url()));
   await page.goto(`${pathToFileURL(html)}#frame=0&${settings}`);
-  await page.waitForFunction(() => window.fulcrum, null, { timeout: 120000 });
+  await page.waitForFunction(() => window.fulcrum);
   await page.evaluate(() => {
     // The page draws with the browser's next picture; the one after that has it.
     window.drawn = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));

@@ -40,6 +40,21 @@ test('ambient occlusion darkens places between bodies, and nothing else gets ano
   await occluded.close();
 });
 
+test('bodies that are far away do not vanish', async () => {
+  // From 15 km the whole pyramid, 36 m high, is less than two pixels high, a box a tenth of one.
+  const page = await openPage(browser, html, complaints, [], 'camera=0,15,15000,0,15,0&color=plain');
+  const colored = await page.evaluate(() => {
+    const pixels = window.pictureNow();
+    let count = 0;
+    for (let i = 0; i < pixels.length; i += 4) {
+      if (Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 40) ++count;
+    }
+    return count;
+  });
+  assert.ok(colored >= 6, `${colored} pixels are colored`);
+  await page.close();
+});
+
 test('labels that would be over each other stand on top of each other', () => {
   const label = (x, y) => ({ x, y, width: 40, height: 16 });
   assert.deepEqual(raises([label(0, 0), label(50, 0), label(100, 3)]), [0, 0, 0]);

@@ -80,6 +80,20 @@ test('the camera has every body in the picture over the whole run', async () => 
   }
 });
 
+test('a moment by itself fills the picture, too', async () => {
+  // The pyramid sinks by the gaps between its layers: at the end it leaves room above.
+  const heights = await page.evaluate(() => {
+    const { fulcrum } = window, top = () => Math.max(...[...Array(fulcrum.bodyCount).keys()].map((body) => fulcrum.project(...fulcrum.body(body).position)[1]));
+    fulcrum.seek(fulcrum.frameCount - 1);
+    const whole = top();
+    fulcrum.fit();
+    return { whole, fitted: top(), frame: fulcrum.frame, last: fulcrum.frameCount - 1 };
+  });
+  assert.equal(heights.frame, heights.last);
+  assert.ok(heights.fitted > heights.whole + 0.05 && heights.fitted < 1, JSON.stringify(heights));
+  await press('r');
+});
+
 test('no text is over the picture, on a desk and on a phone', async () => {
   await page.evaluate(() => window.fulcrum.color('island'));
   for (const width of [1280, 820, 390]) {

@@ -8,9 +8,10 @@ import { createServer } from 'node:http';
 import test, { after, before } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { load } from '../../Package/src/node.js';
+import { PRESETS, SLIDERS } from '../effort.js';
 
 // The viewer's tests have the browser.
-const { launch } = await import(pathToFileURL(fileURLToPath(new URL('../../../Samples/Viewer/test/browser.mjs', import.meta.url))));
+const { launch, newPage } = await import(pathToFileURL(fileURLToPath(new URL('../../../Samples/Viewer/test/browser.mjs', import.meta.url))));
 const pathOf = (name) => fileURLToPath(new URL(name, import.meta.url));
 const html = pathOf('../../../build/webassembly/Web/web.html');
 
@@ -22,12 +23,12 @@ before(async () => {
 after(() => browser?.close());
 
 async function open(address) {
-  const page = await browser.newPage({ viewport: { width: 900, height: 500 } });
+  const page = await newPage(browser, { viewport: { width: 900, height: 500 } });
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
   page.on('request', (request) => requests.push(request.url()));
   await page.goto(address);
-  await page.waitForFunction(() => window.fulcrum || /cannot/.test(document.getElementById('message').textContent), null, { timeout: 240000 });
+  await page.waitForFunction(() => window.fulcrum || /cannot/.test(document.getElementById('message').textContent));
   assert.equal(await page.textContent('#message'), '');
   return page;
 }
@@ -50,7 +51,7 @@ test('a pile falls while the page plays, and hashes are those of node', { timeou
   });
   const before = await height();
   await page.evaluate(() => window.fulcrum.play());
-  await page.waitForFunction(() => window.fulcrum.steps > 3, null, { timeout: 240000 });
+  await page.waitForFunction(() => window.fulcrum.steps > 3);
   await page.evaluate(() => { window.fulcrum.play(false); window.fulcrum.step(40); });
   assert.ok(await height() < before - 1, 'the top of the pyramid fell');
   assert.match(await page.textContent('#clock'), /step \d+/);
@@ -153,6 +154,15 @@ test('joints, labels and what a scene draws are shown, and follow the world', { 
   await page.close();
 });
 
+test('the presets are those of the engine, and the sliders reach them', async () => {
+  const header = await readFile(pathOf('../../../Physics/Settings.h'), 'utf8');
+  const presets = [...header.matchAll(/static constexpr SolverSettings (\w+)\(\) \{[^{}]*return \{(?:\.substeps = (\d+))?\}/g)];
+  const substepsOfDefault = Number(header.match(/int substeps = (\d+);/)[1]);
+  assert.deepEqual(PRESETS.map(({ label, solver }) => [label, solver.substeps]), presets.map(([, name, substeps]) => [name, Number(substeps ?? substepsOfDefault)]));
+  const { places } = SLIDERS.find(({ id }) => id === 'substeps');
+  for (const { solver } of PRESETS) assert.ok(places.includes(solver.substeps), `no place for ${solver.substeps} substeps`);
+});
+
 test('the sliders act', { timeout: 600000 }, async () => {
   const page = await open(`${pathToFileURL(html)}#scene=pyramid&paused=1`);
   const set = (id, place) => page.evaluate(([name, value]) => {
@@ -210,7 +220,7 @@ test('the package loads in pages, isolated with threads, else without', { timeou
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   try {
     for (const [kind, threads] of [['alone', 2], ['open', 1]]) {
-      const page = await browser.newPage();
+      const page = await newPage(browser);
       page.on('pageerror', (error) => complaints.push(error.message));
       await page.goto(`http://localhost:${server.address().port}/${kind}/`);
       const found = await page.evaluate(async () => {
