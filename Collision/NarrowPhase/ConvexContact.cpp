@@ -90,8 +90,7 @@ Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, con
         built.proven = NoBetterAxis(pair.position, pair.InnerRadii(), reference.axis, depth, radius);
     }
     int chosen[4];
-    manifold.pointCount =
-        clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen, tolerances.Weights());
+    manifold.pointCount = clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen);
     for (int i = 0; i < manifold.pointCount; ++i) {
         const int c = chosen[i];
         const Vector3& x = clipped[c];
@@ -202,7 +201,7 @@ void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const S
         return ManifoldPoint{onCore + n * pair.a.ConvexRadius(), separation - pair.RadiusSum(), clip.FeatureOf(i, ofA)};
     };
     AddPointsAhead<kMostClipped>(clip.clipped.Count(), pointAt, tolerances.reach - pair.RadiusSum(), tolerances.Apart(),
-                                 tolerances.prefer, tolerances.Weights(), manifold);
+                                 tolerances.prefer, {}, manifold);
 }
 
 }  // namespace

@@ -78,16 +78,15 @@ TEST_P(CreatedOverlap, OfAPyramidLeavesLittleSpeed) {
                     world.Add({.shape = CubeOf(0.5f), .position = {size * (j + 0.5 * i), 0.5 + size * i, 0}}));
         const Result result = RunFor(world, ids, 8);
         // At one substep a box may come to fall from the top.
-        const double most = Substeps() == 1 ? 10 : 1.8;
+        const double most = Substeps() == 1 ? 10 : 2;
         EXPECT_LT(result.fastest, hasGravity ? most : 0.5);
         EXPECT_LT(result.left, Substeps() == 1 ? 0.08 : 0.02);  // what its weight presses in
     }
 }
 
 // Overlaps of all depths are separated slowly up to the end, also in short steps, with much effort: what was left at
-// 1 % of the size was pushed out at full stiffness, and 64 spheres left at up to 1.9 m/s.
+// 1 % of the size was pushed out at full stiffness, and 64 spheres left at up to 1.9 m/s, with 0.4 % at up to 1.7.
 TEST_P(CreatedOverlap, OfAGridInShortStepsLeavesLittleSpeed) {
-    if (Substeps() > 16) return;  // up to 1.7 m/s
     for (const ShapePtr& shape : {SphereOf(0.5f), CubeOf(0.5f)}) {
         TestWorld world(Settings(false));
         std::vector<BodyId> ids;
@@ -101,7 +100,7 @@ TEST_P(CreatedOverlap, OfAGridInShortStepsLeavesLittleSpeed) {
             world.Step(dt);
             for (const BodyId id : ids) fastest = std::max<double>(fastest, Length(world.VelocityOf(id)));
         }
-        EXPECT_LT(fastest, 0.6) << ShapeTypeName(shape->Type());
+        EXPECT_LT(fastest, 0.2) << ShapeTypeName(shape->Type());
         EXPECT_LT(world.Report().largestPenetration, 0.01f) << ShapeTypeName(shape->Type());
     }
 }

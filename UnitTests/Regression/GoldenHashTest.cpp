@@ -12,9 +12,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x6d776fb292a76653ull;
+constexpr uint64_t kGoldenHash = 0x5900fec7f3525decull;
 constexpr uint64_t kGoldenHashOfJoints = 0x5d34c25859753576ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xdb94df56198b8457ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x593636f81a286878ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x022a9e2488d02425ull;
 
 std::string Hex(uint64_t number) {

@@ -45,5 +45,11 @@ TEST(PathsFarApart, ComeTogetherWhereTheirRotationMovesThemAway) {
     for (const uint32_t i : {2099u, 2147u, 3467u, 3879u, 3901u, 4179u}) ExpectToRecover(Kind::Path, i);
 }
 
+// The way along a wheel's suspension, tens of meters beyond its limits, counted as a lever arm: as one of the bodies
+// touched the ground on the way, the other was spun up, by up to 17 kJ.
+TEST(WheelsFarApart, AreNotSpunUpByTheGround) {
+    for (const uint32_t i : {1528u, 3700u, 8488u}) ExpectToRecover(Kind::Wheel, i);
+}
+
 }  // namespace
 }  // namespace fulcrum::testing::far_apart

@@ -57,6 +57,29 @@ TEST_P(FlatBoxes, StackedSquarelyTouchInFourCorners) {
     EXPECT_EQ(Features(m).size(), 4u);
 }
 
+// A prism of twelve sides that stands on a bottom edge, tilted by 0.03 rad: both ends of the edge touch, all other
+// corners are at least 4 mm above the floor. The largest area would leave out one end, and the prism would rock about
+// the other.
+TEST(TiltedPrism, TouchesAtBothEndsOfTheEdgeThatItStandsOn) {
+    constexpr int kSides = 12;
+    constexpr float kTilt = 0.03f;
+    std::vector<Vector3> corners;
+    for (int i = 0; i < kSides; ++i)
+        for (const float y : {-0.2f, 0.2f}) {
+            const float angle = (static_cast<float>(i) + 0.5f) * 6.28318531f / kSides;
+            corners.push_back(Vector3(0.5f * std::cos(angle), y, 0.5f * std::sin(angle)));
+        }
+    const ConvexPtr prism = MakeHull(corners), floor = MakeBox(Vector3(2, 1, 2));
+    const Quaternion tilt{std::sin(kTilt / 2), 0, 0, std::cos(kTilt / 2)};
+    float lowest = 0;
+    for (const Vector3& corner : corners) lowest = std::min(lowest, Rotate(tilt, corner).y());
+    const Manifold m = CollideCold(floor, prism, {Vector3(0, 1 - lowest, 0), tilt});
+    ASSERT_EQ(m.pointCount, 4);
+    int touching = 0;
+    for (int i = 0; i < m.pointCount; ++i) touching += m.points[i].separation < 1e-4f;
+    EXPECT_EQ(touching, 2);
+}
+
 TEST_P(FlatBoxes, OffsetTouchAtTheCornersOfTheOverlap) {
     const ConvexPtr box = MakeCuboid(Vector3(0.5f, 0.5f, 0.5f));
     const Manifold m = CollideCold(box, box, {Vector3(0.3f, 1.01f, -0.2f), {}});

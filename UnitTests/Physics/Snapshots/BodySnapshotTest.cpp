@@ -81,7 +81,7 @@ TEST(BodySnapshot, PutsAStackBackThatStands) {
     ASSERT_TRUE(world.System().RestoreBodies(bytes));
     world.Run(2);
     for (int i = 0; i < 5; ++i) {
-        EXPECT_NEAR(world.PositionOf(stack[static_cast<size_t>(i)]).x(), 0, 1e-3) << i;
+        EXPECT_NEAR(world.PositionOf(stack[static_cast<size_t>(i)]).x(), 0, 2e-3) << i;
         EXPECT_NEAR(world.PositionOf(stack[static_cast<size_t>(i)]).y(), 0.5 + i, 0.01) << i;
     }
     EXPECT_FALSE(world.Bodies().IsAwake(stack[4]));
