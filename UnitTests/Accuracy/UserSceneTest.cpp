@@ -88,13 +88,14 @@ TEST_F(UserScene, OfAFileHasTheOverlapOfItsContactsAsError) {
     EXPECT_NE(advice.find("stack.json"), std::string::npos) << advice;
 }
 
-// The upper cubes press on the two lowest, of which both yield: no setting of these two is exact to a billionth.
+// The upper cubes press on the two lowest, of which both yield: no setting of these two is exact to a billionth. (With
+// one substep the stack sways, and any pair may be the worst.)
 TEST_F(UserScene, ThatNoSettingSufficesForSaysWhatStandsInTheWay) {
     const std::string file = (folder_ / "stack.json").string();
     ASSERT_TRUE(WriteScene(file, Stack()));
     const auto command = ParseLabCommand({"advise", file, "--error", "1e-9"});
     ASSERT_TRUE(command) << command.GetError().message;
-    const std::vector<RunRecord> runs = RunAt(command.Value().lab, {1, 16});
+    const std::vector<RunRecord> runs = RunAt(command.Value().lab, {2, 16});
     ASSERT_EQ(runs.size(), 2u);
     for (const RunRecord& run : runs) EXPECT_NE(run.worst.find("body 1 and body 2"), std::string::npos) << run.worst;
     const SceneRuns scene{command.Value().lab.scenes[0], runs};
