@@ -160,7 +160,8 @@ template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
 // The same iteration for one lane, with successive over-relaxation of its normal rows; relax: that of RelaxContacts,
-// with the separations as they are. Returns whether its velocity error was above ContactSolveSettings::mostError before.
+// with the separations as they are. Returns whether its velocity error was above ContactSolveSettings::mostError
+// before.
 template <int N, bool kFixedB>
 bool IterateContact(ContactBatch<N, kFixedB>& batch, int lane, float overRelaxation, BodyState* states,
                     const ContactSolveSettings& settings, bool relax);
