@@ -70,6 +70,12 @@ void Gather(std::span<WorkerFindings> workers, Array<uint32_t> WorkerFindings::*
     std::sort(all.begin(), all.end());
 }
 
+// How long a body had been settling in the last step, s. `earlier`: those of that step; the ones before it are dropped.
+float SecondsSettled(std::span<const SettlingBody>& earlier, uint32_t body) {
+    while (!earlier.empty() && earlier.front().body < body) earlier = earlier.subspan(1);
+    return !earlier.empty() && earlier.front().body == body ? earlier.front().seconds : 0.0f;
+}
+
 // The velocity changed by `push`: the part that only reduces speed is applied in full, the rest is limited to
 // `fastest`.
 Vector3 LimitedPush(const Vector3& own, const Vector3& push, float fastest) {
@@ -147,7 +153,8 @@ void GatherCrowd(const StepContext& step, BodyStore& bodies, CrowdState& crowd, 
     Array<SettlingBody>& settling = crowd.settling;
     crowd.settled.swap(settling);
     settling.clear();
-    size_t earlier = 0, kept = 0;
+    std::span<const SettlingBody> earlier = crowd.settled;
+    size_t kept = 0;
     for (size_t begin = 0, end = 0; begin < noted.size(); begin = end) {
         const uint32_t body = BodyOf(noted[begin]);
         uint32_t level = 0;  // of those below kOverlaps
@@ -156,13 +163,11 @@ void GatherCrowd(const StepContext& step, BodyStore& bodies, CrowdState& crowd, 
         if (const uint32_t most = LevelOf(noted[end - 1]); most == kOverlapsDeeply) {
             level = kOverlaps;
         } else if (most == kOverlaps) {
-            while (earlier < crowd.settled.size() && crowd.settled[earlier].body < body) ++earlier;
-            const bool isEarlier = earlier < crowd.settled.size() && crowd.settled[earlier].body == body;
-            settling.push_back({body, (isEarlier ? crowd.settled[earlier].seconds : 0.0f) + step.dt});
+            settling.push_back({body, SecondsSettled(earlier, body) + step.dt});
             if (settling.back().seconds < kSettlingSeconds) level = kOverlaps;
         }
         if (level == 0) continue;
-        bodies.dynamics[body].crowded = static_cast<uint8_t>(level & kOverlaps);
+        bodies.dynamics[body].crowded = level & kOverlaps;
         noted[kept++] = body;
     }
     noted.resize(kept);

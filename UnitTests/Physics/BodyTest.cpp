@@ -1,5 +1,6 @@
 // What a body is told to be: locked, layered, moved by hand, added, removed, read.
 #include <Fulcrum/Physics/SettingsFields.h>
+#include <Fulcrum/UnitTests/Support/FieldNames.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <cmath>
@@ -242,19 +243,6 @@ TEST(Bodies, AreReadAsTheyWereDescribed) {
     EXPECT_EQ(world.Bodies().GetMotionType(id), MotionType::Dynamic);
 }
 
-// The names of the settings of a body.
-struct NameList {
-    std::set<std::string> names;
-    template <class T>
-    void Field(const char* name, T&) {
-        names.insert(name);
-    }
-    template <class E, class Names>
-    void Choice(const char* name, E&, const Names&) {
-        names.insert(name);
-    }
-};
-
 TEST(Bodies, EachSettingIsReadBackAndCanBeChanged) {
     TestWorld world;
     BodyInterface& bodies = world.Bodies();
@@ -329,7 +317,7 @@ TEST(Bodies, EachSettingIsReadBackAndCanBeChanged) {
         expect("startAsleep", bodies.IsAwake(id) == (!s.startAsleep && s.motion != MotionType::Static));
         EXPECT_EQ(bodies.GetGroup(id).group, s.group.group);
     }
-    NameList all;
+    FieldNames all;
     BodySettings any;
     Describe(all, any);
     all.names.erase("density");  // read as mass

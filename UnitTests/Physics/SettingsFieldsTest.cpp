@@ -1,6 +1,7 @@
 // What scene files and recordings of calls have of settings: every member that the headers declare.
 #include <Fulcrum/Physics/SettingsFields.h>
 #include <Fulcrum/UnitTests/Physics/BadInput/Spoiler.h>
+#include <Fulcrum/UnitTests/Support/FieldNames.h>
 
 #include <gtest/gtest.h>
 
@@ -8,20 +9,6 @@
 
 namespace fulcrum::testing {
 namespace {
-
-// An archive that notes the names of one structure's own fields.
-class FieldNames {
-public:
-    template <class T>
-    void Field(const char* name, T&) {
-        names.insert(name);
-    }
-    template <class E, class Names>
-    void Choice(const char* name, E&, const Names&) {
-        names.insert(name);
-    }
-    std::set<std::string> names;
-};
 
 template <class T>
 void ExpectAllMembers() {
