@@ -177,7 +177,7 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
                 auto& record = records[pair.contact];
                 VisitContact(stream, contact, pair.pointCount);
                 VisitRecord(stream, record, pair.pointCount);
-                if (keepsListenersData && pair.pointCount > 0 && record.Has(ContactRecord::kSurfaceVelocity))
+                if (keepsListenersData && record.Has(ContactRecord::kSurfaceVelocity))
                     VisitSurfaceVelocity(stream, surfaceVelocities[pair.contact]);
                 if (keepsListenersData && record.Has(ContactRecord::kMassOverride))
                     VisitMassOverride(stream, massOverrides[pair.contact]);

@@ -1,3 +1,4 @@
+#include <Fulcrum/Physics/Snapshots/Snapshots.h>
 #include <Fulcrum/UnitTests/Random/Program.h>
 #include <Fulcrum/UnitTests/Random/Watch.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
@@ -215,7 +216,25 @@ private:
                 return std::string("other poses with ") + kNames[i];
             if (HashOfState(twins_[i]) != state) return std::string("another state with ") + kNames[i];
             if (twins_[i].system->HashState() != whole)
-                return std::string("another state that cannot be read with ") + kNames[i];
+                return std::string("another state that cannot be read with ") + kNames[i] + FirstDifference(twins_[i]);
+        }
+        return {};
+    }
+
+    // Between the snapshots of the first world and of another one.
+    std::string FirstDifference(const Twin& other) {
+        if (!twins_[0].system->SaveSnapshot(saved_) || !other.system->SaveSnapshot(again_)) return {};
+        const Result<SnapshotParts> first = CheckSnapshot(saved_), second = CheckSnapshot(again_);
+        if (!first || !second) return {};
+        const SnapshotParts &a = first.Value(), &b = second.Value();
+        for (size_t i = 0, at = 0; i < a.header.blocks && i < b.header.blocks; at += a.BlockAt(i++).size) {
+            const SnapshotBlock one = a.BlockAt(i), two = b.BlockAt(i);
+            const size_t size = std::min(one.size, two.size);
+            const auto differs = std::mismatch(&a.data[at], &a.data[at] + size, &b.data[at]).first - &a.data[at];
+            if (one.key != two.key || one.size != two.size || static_cast<size_t>(differs) != size)
+                return ": section " + std::to_string(one.key >> 24) + ", block " + std::to_string(one.key & 0xffffff) +
+                       ", sizes " + std::to_string(one.size) + " and " + std::to_string(two.size) + ", from byte " +
+                       std::to_string(differs);
         }
         return {};
     }
