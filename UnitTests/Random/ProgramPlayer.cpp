@@ -126,11 +126,12 @@ private:
         twins_[0].system->VisitBodies([&](BodyId id) {
             const Position at = bodies.GetPose(id).position;
             const Vector3 v = bodies.GetLinearVelocity(id), w = bodies.GetAngularVelocity(id);
-            std::printf("    body %u %s motion %d mass %g at %g %g %g v %g %g %g w %g %g %g continuous %d awake %d\n",
-                        id.index, ShapeTypeName(bodies.GetShape(id)->Type()),
-                        static_cast<int>(bodies.GetMotionType(id)), double{bodies.GetMass(id)}, at.x(), at.y(), at.z(),
-                        double{v.x()}, double{v.y()}, double{v.z()}, double{w.x()}, double{w.y()}, double{w.z()},
-                        static_cast<int>(bodies.GetContinuous(id)), bodies.IsAwake(id));
+            std::printf(
+                "    body %u %s motion %d mass %g at %g %g %g v %g %g %g w %g %g %g locks %u continuous %d awake %d\n",
+                id.index, ShapeTypeName(bodies.GetShape(id)->Type()), static_cast<int>(bodies.GetMotionType(id)),
+                double{bodies.GetMass(id)}, at.x(), at.y(), at.z(), double{v.x()}, double{v.y()}, double{v.z()},
+                double{w.x()}, double{w.y()}, double{w.z()}, static_cast<unsigned>(bodies.GetLockedAxes(id)),
+                static_cast<int>(bodies.GetContinuous(id)), bodies.IsAwake(id));
         });
         twins_[0].system->VisitContacts([&](const ContactView& contact) {
             const Vector3& n = contact.normal;
