@@ -18,9 +18,10 @@ FULCRUM_FORCE_INLINE float* RowOf(BodyState& state) {
     return kRow == BodyRow::Velocity ? state.VelocityRow() : state.PoseRow();
 }
 
-// Returns the mask of lanes whose inertia rotates with the body within the step.
+// Returns BodyMass::flags.
 template <int N>
-FULCRUM_FORCE_INLINE auto GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
+FULCRUM_FORCE_INLINE Wide<N> GatherMass(const uint32_t (&index)[N], const BodyMass* masses,
+                                        UniformInverseMass<Wide<N>>& out) {
     const float* rows[N];
     for (int i = 0; i < N; ++i) rows[i] = masses[index[i]].Row();
     Wide<N> r[8];
@@ -28,12 +29,47 @@ FULCRUM_FORCE_INLINE auto GatherMass(const uint32_t (&index)[N], const BodyMass*
     constexpr int i = BodyMass::kInverseInertia;
     out.inertia = {r[i], r[i + 1], r[i + 2], r[i + 3], r[i + 4], r[i + 5]};
     out.mass = r[BodyMass::kInverseMass];
-    return r[BodyMass::kTurns] > Wide<N>(0.0f);
+    return r[BodyMass::kFlags];
+}
+
+// Whether a body has a locked translation.
+template <int N>
+FULCRUM_FORCE_INLINE bool AnyLocked(const Wide<N>& flags) {
+    return HorizontalMax(flags) >= float{BodyMass::kLockedX};
+}
+
+// The mask of lanes with the flag.
+template <int N>
+[[gnu::noinline, gnu::cold]] WideMask<N> LanesWith(const Wide<N>& flags, int flag) {
+    Wide<N> has(0.0f);
+    for (int i = 0; i < N; ++i)
+        if (static_cast<int>(flags[i]) & flag) has.Set(i, 1.0f);
+    return has > Wide<N>(0.0f);
+}
+
+// The mask of lanes whose inertia rotates with the body within the step.
+template <int N>
+FULCRUM_FORCE_INLINE WideMask<N> TurningLanes(const Wide<N>& flags) {
+    if (AnyLocked<N>(flags)) [[unlikely]]
+        return LanesWith<N>(flags, BodyMass::kTurns);
+    return flags > Wide<N>(0.0f);
+}
+
+// The same with an inverse mass for each axis.
+template <int N>
+FULCRUM_FORCE_INLINE Wide<N> GatherMass(const uint32_t (&index)[N], const BodyMass* masses, InverseMass<Wide<N>>& out) {
+    UniformInverseMass<Wide<N>> uniform;
+    const Wide<N> flags = GatherMass<N>(index, masses, uniform);
+    out = {uniform.mass, uniform.inertia};
+    if (AnyLocked<N>(flags)) [[unlikely]]
+        for (int k = 0; k < 3; ++k)
+            out.mass[k] = Select(LanesWith<N>(flags, BodyMass::kLockedX << k), Wide<N>(0.0f), out.mass[k]);
+    return flags;
 }
 
 // Applies the scales of a MassOverride.
-template <class Real>
-FULCRUM_FORCE_INLINE void ScaleMass(InverseMass<Real>& inverse, const Real& massScale, const Real& inertiaScale) {
+template <class Mass, class Real>
+FULCRUM_FORCE_INLINE void ScaleMass(Mass& inverse, const Real& massScale, const Real& inertiaScale) {
     inverse.mass = inverse.mass * massScale;
     Sym3<Real>& i = inverse.inertia;
     for (Real* x : {&i.xx, &i.yy, &i.zz, &i.xy, &i.xz, &i.yz}) *x = *x * inertiaScale;

@@ -5,7 +5,8 @@
 //     V = (v2 + w2 x r2) - (v1 + w1 x r1),   W = w2 - w1,
 // and with a point at c + a t1 + b t2 its row is J v = V.n + b W.t1 - a W.t2. So a batch reads the twist once, iterates
 // all its rows on six numbers with their small response matrices, and applies one wrench (F, T) at the end:
-//     v += m^-1 F,  w += I^-1 (r x F + T).
+//     v += m^-1 F,  w += I^-1 (r x F + T),
+// with m^-1 zero along the locked translations of a body.
 // The result equals solving the axis and angle parts row after row (tests compare them), at half the arithmetic.
 // Friction rows come first, normal rows last, so non-penetration wins.
 //
@@ -30,7 +31,7 @@ template <int N>
 struct MovingSide {
     using Real = Wide<N>;
     Vec3<Real> arm;  // m, from its center of mass to c
-    InverseMass<Real> inverse;
+    UniformInverseMass<Real> inverse;
 };
 // Body B if it is static or kinematic: only the motion of its point at c is needed.
 template <int N>
@@ -70,10 +71,14 @@ struct ContactBatch {
     // one manifold is valid (UpdateSeparations).
     uint8_t collisions[N];
     bool hasCollidedAgain;  // some lane
+    // Some body has locked translations. They get no velocity from impulses, and the responses are those of the free
+    // axes. locks: bits 0..2, x, y and z of A; bits 3..5, those of B.
+    bool isGuided = false;
+    uint8_t locks[N];
 
     Vec3<Real> normal, tangent1, tangent2;
     Vec3<Real> armA;
-    InverseMass<Real> inverseA;
+    UniformInverseMass<Real> inverseA;
     std::conditional_t<kFixedB, FixedSide<N>, MovingSide<N>> sideB;
 
     struct Row {
@@ -151,6 +156,13 @@ struct ContactSolveSettings {
 template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const ConstSolverBodies& bodies,
                          const ContactPrepareSettings& settings);
+
+// After PrepareContacts, for a batch with `isGuided`: limits the depths of the rows, and scales them by the square of
+// the share of their response that the locked translations leave. A row that can move a body by its rotation alone
+// would rotate it by the overlap over the lever arm, however short that is, and two such rows that contradict each
+// other would spin it up.
+template <int N, bool kFixedB>
+void LimitGuidedPushes(ContactBatch<N, kFixedB>& batch);
 
 // Applies the impulses of the last step.
 template <int N, bool kFixedB>

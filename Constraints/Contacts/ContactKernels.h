@@ -71,11 +71,27 @@ FULCRUM_FORCE_INLINE Vec3<Real> Angular(const Real (&row)[8]) {
     return Vec3<Real>(row[BodyState::kAngular], row[BodyState::kAngular + 1], row[BodyState::kAngular + 2]);
 }
 
-// Adds sign * M^-1 (F, r x F + T) to a row.
+// The mask of lanes in which the bit of ContactBatch::locks is set.
+template <int N>
+WideMask<N> LockedLanes(const uint8_t (&locks)[N], int bit) {
+    Wide<N> is(0.0f);
+    for (int i = 0; i < N; ++i)
+        if (locks[i] >> bit & 1) is.Set(i, 1.0f);
+    return is > Wide<N>(0.0f);
+}
+// The components of a vector along the free translations of body A (side 0) or B (side 1).
+template <int N>
+[[gnu::noinline, gnu::cold]] Vec3<Wide<N>> AlongFreeAxes(const uint8_t (&locks)[N], int side, Vec3<Wide<N>> v) {
+    for (int k = 0; k < 3; ++k) v[k] = Select(LockedLanes<N>(locks, 3 * side + k), Wide<N>(0.0f), v[k]);
+    return v;
+}
+
+// Adds sign * M^-1 (F, r x F + T) to a row. along: the force along the body's free translations.
 template <class Real>
-FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const InverseMass<Real>& inverse, const Vec3<Real>& arm,
-                                      const Vec3<Real>& force, const Vec3<Real>& torque, Real sign) {
-    const Vec3<Real> dv = force * (inverse.mass * sign);
+FULCRUM_FORCE_INLINE void ApplyWrench(Real (&row)[8], const UniformInverseMass<Real>& inverse, const Vec3<Real>& arm,
+                                      const Vec3<Real>& along, const Vec3<Real>& force, const Vec3<Real>& torque,
+                                      Real sign) {
+    const Vec3<Real> dv = along * (inverse.mass * sign);
     const Vec3<Real> dw = inverse.inertia * Vec3<Real>((Cross<Real>(arm, force) + torque) * sign);
     row[BodyState::kLinear] += dv.x();
     row[BodyState::kLinear + 1] += dv.y();
@@ -114,9 +130,16 @@ template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twists<N, kFixedB>& twists,
                                       const Vec3<Wide<N>>& force, const Vec3<Wide<N>>& torque) {
     using Real = Wide<N>;
-    ApplyWrench<Real>(twists.a, batch.inverseA, batch.armA, force, torque, Real(-1.0f));
-    if constexpr (!kFixedB)
-        ApplyWrench<Real>(twists.b, batch.sideB.inverse, batch.sideB.arm, force, torque, Real(1.0f));
+    Vec3<Real> alongA = force;
+    if (batch.isGuided) [[unlikely]]
+        alongA = AlongFreeAxes<N>(batch.locks, 0, force);
+    ApplyWrench<Real>(twists.a, batch.inverseA, batch.armA, alongA, force, torque, Real(-1.0f));
+    if constexpr (!kFixedB) {
+        Vec3<Real> alongB = force;
+        if (batch.isGuided) [[unlikely]]
+            alongB = AlongFreeAxes<N>(batch.locks, 1, force);
+        ApplyWrench<Real>(twists.b, batch.sideB.inverse, batch.sideB.arm, alongB, force, torque, Real(1.0f));
+    }
 }
 
 template <int N>

@@ -19,6 +19,8 @@ bool IterateContact(ContactBatch<N, kFixedB>& batch, int lane, float overRelaxat
     single.hasNotes = batch.hasNotes;
     single.hasSurface = batch.hasSurface;
     single.gentle = batch.gentle >> lane & 1;
+    single.isGuided = batch.isGuided;
+    single.locks[0] = batch.locks[lane];
     single.inverseSoftDepth = batch.inverseSoftDepth[lane];
     for (int i = 0; i < batch.pointCount; ++i)
         single.rows[i].inverseResponse = single.rows[i].inverseResponse * Wide<1>(overRelaxation);

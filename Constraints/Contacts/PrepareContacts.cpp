@@ -19,7 +19,7 @@ struct Responses {
     Real friction[6] = {};  // t1 t1, t2 t2, nn, t1 t2, t1 n, t2 n
     Real coupling[3][3] = {};
 
-    FULCRUM_FORCE_INLINE void Add(const InverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n,
+    FULCRUM_FORCE_INLINE void Add(const UniformInverseMass<Real>& inverse, const Vec3<Real>& arm, const Vec3<Real>& n,
                                   const Vec3<Real>& t1, const Vec3<Real>& t2) {
         const Vec3<Real> jn = Cross<Real>(arm, n), j1 = Cross<Real>(arm, t1), j2 = Cross<Real>(arm, t2);
         const Vec3<Real> in = inverse.inertia * jn, i1 = inverse.inertia * j1, i2 = inverse.inertia * j2;
@@ -44,6 +44,92 @@ struct Responses {
         }
     }
 };
+
+// Relative to the response without locks: rows with a smaller one are inactive. Their bodies could only separate by a
+// rotation that is ten thousand times as fast.
+constexpr float kLeastShare = 1e-4f;
+
+// Overlaps across locked translations count as no deeper than this fraction of 1 / inverseSoftDepth.
+constexpr float kDeepestGuided = 0.5f;
+
+// Sets ContactBatch::isGuided and `locks` from BodyMass::flags.
+template <int N, bool kFixedB>
+[[gnu::noinline, gnu::cold]] void SetLocks(ContactBatch<N, kFixedB>& batch, const Wide<N>& flagsA,
+                                           const Wide<N>& flagsB) {
+    batch.isGuided = true;
+    for (int i = 0; i < N; ++i) {
+        const int a = static_cast<int>(flagsA[i]) / BodyMass::kLockedX,
+                  b = static_cast<int>(flagsB[i]) / BodyMass::kLockedX;
+        batch.locks[i] = static_cast<uint8_t>(a | b << 3);
+    }
+}
+
+// The mobility along n, t1 and t2 that locked translations take: m^-1 times the products of the vectors' components
+// along them, summed over both bodies. Zero in lanes without locks.
+template <class Real>
+struct LockedMobility {
+    Real nn{0.0f}, t1t1{0.0f}, t2t2{0.0f}, t1t2{0.0f}, nt1{0.0f}, nt2{0.0f};
+};
+template <int N, bool kFixedB>
+LockedMobility<Wide<N>> LockedMobilityOf(const ContactBatch<N, kFixedB>& batch) {
+    using Real = Wide<N>;
+    LockedMobility<Real> locked;
+    const auto add = [&](int side, const Real& inverseMass) {
+        for (int k = 0; k < 3; ++k) {
+            const Real mass = Select(LockedLanes<N>(batch.locks, 3 * side + k), inverseMass, Real(0.0f));
+            const Real n = batch.normal[k], t1 = batch.tangent1[k], t2 = batch.tangent2[k];
+            locked.nn += mass * n * n;
+            locked.t1t1 += mass * t1 * t1;
+            locked.t2t2 += mass * t2 * t2;
+            locked.t1t2 += mass * t1 * t2;
+            locked.nt1 += mass * n * t1;
+            locked.nt2 += mass * n * t2;
+        }
+    };
+    add(0, batch.inverseA.mass);
+    if constexpr (!kFixedB) add(1, batch.sideB.inverse.mass);
+    return locked;
+}
+
+// `response` less what the locks take; zero if too little is left. Lanes without locks stay bit-identical.
+template <class Real>
+Real WithoutLocked(const Real& response, const Real& locked) {
+    const Real left = response - locked;
+    return Select((locked > Real(0.0f)) & (left < response * Real(kLeastShare)), Real(0.0f), left);
+}
+
+template <int N, bool kFixedB>
+[[gnu::noinline, gnu::cold]] void RemoveLocked(const ContactBatch<N, kFixedB>& batch, Responses<Wide<N>>& responses) {
+    const LockedMobility<Wide<N>> locked = LockedMobilityOf(batch);
+    responses.normal[0] -= locked.nn;
+    responses.friction[0] = WithoutLocked(responses.friction[0], locked.t1t1);
+    responses.friction[1] = WithoutLocked(responses.friction[1], locked.t2t2);
+    responses.friction[3] -= locked.t1t2;
+    responses.coupling[0][0] -= locked.nt1;
+    responses.coupling[0][1] -= locked.nt2;
+}
+
+// Makes rows inactive whose response the locks take.
+template <int N, bool kFixedB>
+[[gnu::noinline, gnu::cold]] void DropLockedRows(ContactBatch<N, kFixedB>& batch) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    const LockedMobility<Real> locked = LockedMobilityOf(batch);
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        // 1 / (1 + inverseResponse locked) is the share of the response that is left.
+        const auto kept = (locked.nn <= zero) |
+                          ((row.inverseResponse > zero) & (row.inverseResponse * locked.nn < Real(1.0f / kLeastShare)));
+        row.inverseResponse = Select(kept, row.inverseResponse, zero);
+        row.impulse = Select(kept, row.impulse, zero);
+    }
+    const auto drop = [&](int k, const Real& taken) {
+        const auto kept = (taken <= zero) | (batch.frictionInverse[k] > zero);
+        batch.frictionImpulse[k] = Select(kept, batch.frictionImpulse[k], zero);
+    };
+    drop(0, locked.t1t1);
+    drop(1, locked.t2t2);
+}
 
 template <class Real>
 Real InverseOrZero(Real x) {
@@ -78,7 +164,7 @@ template <int N, bool kFixedB>
     const auto keepVector = [&](Vec3<Real>& v) {
         for (int k = 0; k < 3; ++k) keep(v[k]);
     };
-    const auto keepMass = [&](InverseMass<Real>& m) {
+    const auto keepMass = [&](UniformInverseMass<Real>& m) {
         for (Real* x :
              {&m.mass, &m.inertia.xx, &m.inertia.yy, &m.inertia.zz, &m.inertia.xy, &m.inertia.xz, &m.inertia.yz})
             keep(*x);
@@ -190,8 +276,12 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     const Real zero(0.0f);
     Real head[8], impulses[8];
     GatherRecordRow<N>(batch.contact, records, Record::kHead, head);
-    GatherMass<N>(batch.bodyA, bodies.masses, batch.inverseA);
-    if constexpr (!kFixedB) GatherMass<N>(batch.bodyB, bodies.masses, batch.sideB.inverse);
+    const Real flagsA = GatherMass<N>(batch.bodyA, bodies.masses, batch.inverseA);
+    Real flagsB = zero;
+    if constexpr (!kFixedB) flagsB = GatherMass<N>(batch.bodyB, bodies.masses, batch.sideB.inverse);
+    batch.isGuided = false;
+    if (AnyLocked<N>(Max(flagsA, flagsB))) [[unlikely]]
+        SetLocks(batch, flagsA, flagsB);
     const bool isMarked = HorizontalMax(head[Record::kMarks]) > 0.0f;
     if (isMarked && settings.massOverrides) [[unlikely]]
         OverrideMasses(batch, records, settings.massOverrides);
@@ -269,6 +359,8 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         responses.Add(batch.sideB.inverse, armB, n, t1, t2);
     }
 
+    if (batch.isGuided) [[unlikely]]
+        RemoveLocked(batch, responses);
     for (int k = 0; k < 3; ++k) {
         batch.frictionInverse[k] = InverseOrZero(responses.friction[k]);
         batch.frictionResponse[k] = responses.friction[3 + k];
@@ -307,6 +399,8 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
                                               row.a * other.a * g[5];
         }
     }
+    if (batch.isGuided) [[unlikely]]
+        DropLockedRows(batch);
     if constexpr (kFixedB)
         if (isMarked && settings.surfaceVelocities)
             AddSurfaceMotion(batch, head[Record::kMarks], settings.surfaceVelocities, settings.dt);
@@ -314,6 +408,19 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     if (!finite.All()) KeepLanes(batch, finite);
     if (batch.bounces) PrepareBounces(batch, head[Record::kRestitution], bodies, settings);
     return (~finite).ToBits();
+}
+
+template <int N, bool kFixedB>
+void LimitGuidedPushes(ContactBatch<N, kFixedB>& batch) {
+    using Real = Wide<N>;
+    const Real locked = LockedMobilityOf(batch).nn, one(1.0f), zero(0.0f);
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        const Real share = one / (one + row.inverseResponse * locked),
+                   depth = Max(row.separation, Real(-kDeepestGuided) / batch.inverseSoftDepth);
+        const auto limits = (locked > zero) & (row.separation < zero);
+        row.startSeparation = row.separation = Select(limits, depth * share * share, row.separation);
+    }
 }
 
 template <int N, bool kFixedB>
@@ -334,6 +441,7 @@ void StoreContacts(const ContactBatch<N, kFixedB>& batch, ContactRecord* records
 }
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                          \
+    template void LimitGuidedPushes(ContactBatch<lanes, fixedB>&);                                                  \
     template uint32_t PrepareContacts(ContactBatch<lanes, fixedB>&, const ContactRecord*, const ConstSolverBodies&, \
                                       const ContactPrepareSettings&);                                               \
     template void StoreContacts(const ContactBatch<lanes, fixedB>&, ContactRecord*, float);

@@ -45,6 +45,8 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
     VisitLane(batch, lane, before, [](const void* from, void* to) { std::memcpy(to, from, sizeof(float)); });
     before.count = after.count = 1;
     before.pointCount = batch.pointCount;
+    before.isGuided = batch.isGuided;
+    before.locks[0] = batch.locks[lane];
     MoveOutOfWarmStart(before, freeA, freeB, 1.0f);
     const ContactRecord& record = records[batch.contact[lane]];
     if (record.Has(ContactRecord::kApart)) {
@@ -56,6 +58,7 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
         after.bodyA[0] = 0;
         after.bodyB[0] = 1;
         PrepareContacts<1, kFixedB>(after, records, bodies, settings);
+        if (after.isGuided) LimitGuidedPushes(after);
         if constexpr (kFixedB) {
             auto& side = after.sideB;
             side.velocity.linear -= side.acceleration * Real(elapsed);

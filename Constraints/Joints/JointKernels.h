@@ -125,9 +125,10 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
             // gyration, 1 / radius^2 being inverse inertia / inverse mass; bodies without inertia do not spin.
             constexpr float kMostReach = 4;
             const Sym3<Real>& inertia = batch.massA.inertia;
+            const Vec3<Real>& mass = batch.massA.mass;
             const Real along = Dot<Real>(place.offset, place.line),
                        perRadius = (inertia.xx + inertia.yy + inertia.zz) * Real(1.0f / 3),
-                       square = Real(kMostReach * kMostReach) * batch.massA.mass,
+                       square = Real(kMostReach * kMostReach) * Max(Max(mass.x(), mass.y()), mass.z()),
                        part = Min(Real(1.0f), Sqrt(square / Max(along * along * perRadius, Real(1e-30f))));
             const Vec3<Real> shorter = place.line * (along * Select(perRadius > Real(0.0f), part, Real(1.0f)));
             for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), shorter[k], reach[k]);

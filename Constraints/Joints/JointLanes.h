@@ -86,8 +86,8 @@ FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states
 // The bodies' masses for these joints, mass overrides applied. Returns the mask of lanes in which an inertia rotates.
 template <int N>
 FULCRUM_FORCE_INLINE auto GatherMasses(JointBatch<N>& batch, const BodyMass* masses) {
-    const auto turns =
-        GatherMass<N>(batch.bodyA, masses, batch.massA) | GatherMass<N>(batch.bodyB, masses, batch.massB);
+    const auto turns = TurningLanes<N>(GatherMass<N>(batch.bodyA, masses, batch.massA)) |
+                       TurningLanes<N>(GatherMass<N>(batch.bodyB, masses, batch.massB));
     if (batch.overridesMass) {
         ScaleMass(batch.massA, batch.massScaleA, batch.inertiaScaleA);
         ScaleMass(batch.massB, batch.massScaleB, batch.inertiaScaleB);

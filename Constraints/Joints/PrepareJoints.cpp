@@ -99,8 +99,10 @@ bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, 
     if ((row.error < 0.0f ? row.maxForce : -row.minForce) < JointRow::kUnlimited) return false;
     if (row.kind == JointRow::Kind::SpringAtLeast && row.error > 0.0f) return false;
     if (row.error * row.error * s.pushRate * s.pushRate <= s.maxPushSpeed * s.maxPushSpeed) return false;
-    const float inverse = LengthSquared(row.jacobian.a.linear) * batch.massA.mass[lane] +
-                          LengthSquared(row.jacobian.b.linear) * batch.massB.mass[lane];
+    float inverse = 0;
+    for (int k = 0; k < 3; ++k)
+        inverse += row.jacobian.a.linear[k] * row.jacobian.a.linear[k] * batch.massA.mass[k][lane] +
+                   row.jacobian.b.linear[k] * row.jacobian.b.linear[k] * batch.massB.mass[k][lane];
     const float squared = spring.squaredFrequency > 0.0f ? spring.squaredFrequency : spring.stiffness * inverse;
     const float fastest = kFastest * s.maxPushSpeed;
     return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
@@ -352,9 +354,9 @@ struct Wrench {
 
     Wrench(const JointBatch<N>& batch, const LockImpulses<Wide<N>>& impulses) {
         using Real = Wide<N>;
-        InverseMass<Real> unit;
-        unit.mass = Real(1.0f);
-        unit.inertia.xx = unit.inertia.yy = unit.inertia.zz = Real(1.0f);
+        Sym3<Real> one;
+        one.xx = one.yy = one.zz = Real(1.0f);
+        const InverseMass<Real> unit(Real(1.0f), one);
         const auto impulseOf = [&](const auto& part, const Vec3<Real>& impulse) {
             auto lambda = part.GetTotalLambda();
             for (int k = 0; k < lambda.size(); ++k) lambda[k] = impulse[k];

@@ -34,13 +34,14 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 [[gnu::noinline]] void PullDistant(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
                                    const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real zero(0.0f), one(1.0f), &massA = batch.massA.mass, &massB = batch.massB.mass;
+    const Real zero(0.0f), one(1.0f);
+    const Vec3<Real>&massA = batch.massA.mass, &massB = batch.massB.mass;
     const auto isDistant = batch.isDistant > Real(0.5f);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const RowJacobian<Real>& j = row.part.GetJacobian();
-        const Real squaredA = Dot<Real>(j.a.linear, j.a.linear), squaredB = Dot<Real>(j.b.linear, j.b.linear);
-        const Real linear = squaredA * massA + squaredB * massB;
+        const Vec3<Real> moveA = j.a.linear.cwiseProduct(massA), moveB = j.b.linear.cwiseProduct(massB);
+        const Real linear = Dot<Real>(j.a.linear, moveA) + Dot<Real>(j.b.linear, moveB);
         const auto moves = (linear > zero) & (row.about <= zero);
         const Vec3<Real> turnA = batch.massA.inertia * j.a.angular, turnB = batch.massB.inertia * j.b.angular;
         const Real angular = Dot<Real>(j.a.angular, turnA) + Dot<Real>(j.b.angular, turnB);
@@ -52,8 +53,8 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         const Real wanted = -(speed + PullSpeedOf(row, settings)) / Select(acts, response, one);
         const Real impulse = AddWithinLimits(row, Select(acts, wanted, zero));
         const Real moving = Select(moves, impulse, zero), turning = Select(moves, zero, impulse);
-        a.linear -= j.a.linear * (massA * moving);
-        b.linear += j.b.linear * (massB * moving);
+        a.linear -= moveA * moving;
+        b.linear += moveB * moving;
         a.angular -= turnA * turning;
         b.angular += turnB * turning;
     }
@@ -72,10 +73,13 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
         } else {
             residual += batch.pullLinear;
         }
-        const Real sum = massA + massB;
-        const Vec3<Real> impulse = residual * (-batch.isDistant / Select(sum > zero, sum, one));
-        a.linear -= impulse * massA;
-        b.linear += impulse * massB;
+        Vec3<Real> impulse;
+        for (int k = 0; k < 3; ++k) {
+            const Real sum = massA[k] + massB[k];
+            impulse[k] = residual[k] * (-batch.isDistant / Select(sum > zero, sum, one));
+        }
+        a.linear -= impulse.cwiseProduct(massA);
+        b.linear += impulse.cwiseProduct(massB);
     }
 }
 

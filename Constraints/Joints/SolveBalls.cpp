@@ -30,8 +30,9 @@ FULCRUM_FORCE_INLINE const auto& InertiaOfB(const BallBatch<N>& batch) {
 
 template <bool kRound, int N>
 void GatherMasses(BallBatch<N>& batch, const BodyMass* masses) {
-    InverseMass<Wide<N>> a, b;
-    const auto turning = GatherMass<N>(batch.bodyA, masses, a) | GatherMass<N>(batch.bodyB, masses, b);
+    UniformInverseMass<Wide<N>> a, b;
+    const auto turning =
+        TurningLanes<N>(GatherMass<N>(batch.bodyA, masses, a)) | TurningLanes<N>(GatherMass<N>(batch.bodyB, masses, b));
     batch.turning = turning.Any();
     batch.inverseMassA = a.mass;
     batch.inverseMassB = b.mass;

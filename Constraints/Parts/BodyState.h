@@ -44,10 +44,18 @@ FULCRUM_CHECK_PLACE(BodyState, halfTurn, 1, BodyState::kHalfTurn);
 struct alignas(32) BodyMass {
     float inverseInertia[6] = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz, world axes, 1/(kg m2)
     float inverseMass = 0;                         // 1/kg
-    float turns = 0;                               // 1: the inertia rotates with the body from substep to substep
+    float flags = 0;                               // the sum of these
+
+    enum Flags {
+        kTurns = 1,  // the inertia rotates with the body from substep to substep
+        // Translation along x, y or z is locked. Those of bodies that have all three have no mass instead.
+        kLockedX = 2,
+        kLockedY = 4,
+        kLockedZ = 8
+    };
 
     const float* Row() const { return inverseInertia; }
-    enum Places { kInverseInertia = 0, kInverseMass = 6, kTurns = 7 };
+    enum Places { kInverseInertia = 0, kInverseMass = 6, kFlags = 7 };
     SymmetricMatrix3 InverseInertia() const {
         const float* i = inverseInertia;
         return {i[0], i[1], i[2], i[3], i[4], i[5]};
@@ -56,7 +64,7 @@ struct alignas(32) BodyMass {
 static_assert(sizeof(BodyMass) == 32);
 FULCRUM_CHECK_PLACE(BodyMass, inverseInertia, 0, BodyMass::kInverseInertia);
 FULCRUM_CHECK_PLACE(BodyMass, inverseMass, 0, BodyMass::kInverseMass);
-FULCRUM_CHECK_PLACE(BodyMass, turns, 0, BodyMass::kTurns);
+FULCRUM_CHECK_PLACE(BodyMass, flags, 0, BodyMass::kFlags);
 
 // Pose of the center frame at the start of the step, acceleration by gravity and forces, and the body's size.
 struct alignas(64) BodyPose {
@@ -85,9 +93,20 @@ struct Twist {
 
 // Inverse mass and world inverse inertia.
 template <class Real>
-struct InverseMass {
+struct UniformInverseMass {
     Real mass = Real(0.0f);
     Sym3<Real> inertia;
+};
+
+// The same, with an inverse mass for each world axis: zero along locked translations.
+template <class Real>
+struct InverseMass {
+    Vec3<Real> mass = Vec3<Real>(Real(0.0f), Real(0.0f), Real(0.0f));
+    Sym3<Real> inertia;
+
+    InverseMass() = default;
+    InverseMass(const Real& uniform, const Sym3<Real>& itsInertia)
+        : mass(uniform, uniform, uniform), inertia(itsInertia) {}
 };
 
 // Constraints refer to bodies by index into these arrays.

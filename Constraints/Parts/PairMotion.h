@@ -35,10 +35,10 @@ template <class Real>
 inline void AddPointImpulse(Twist<Real>& motion1, Twist<Real>& motion2, const InverseMass<Real>& mass1,
                             const InverseMass<Real>& mass2, const Vec3<Real>& r1, const Vec3<Real>& r2,
                             const Vec3<Real>& impulse, MaskOf<Real> applied) {
-    const Vec3<Real> linear1 = impulse * mass1.mass, angular1 = mass1.inertia * Cross<Real>(r1, impulse);
+    const Vec3<Real> linear1 = impulse.cwiseProduct(mass1.mass), angular1 = mass1.inertia * Cross<Real>(r1, impulse);
     motion1.linear -= ZeroUnless<Real>(applied, linear1);
     motion1.angular -= ZeroUnless<Real>(applied, angular1);
-    const Vec3<Real> linear2 = impulse * -mass2.mass, angular2 = mass2.inertia * Cross<Real>(impulse, r2);
+    const Vec3<Real> linear2 = impulse.cwiseProduct(-mass2.mass), angular2 = mass2.inertia * Cross<Real>(impulse, r2);
     motion2.linear -= ZeroUnless<Real>(applied, linear2);
     motion2.angular -= ZeroUnless<Real>(applied, angular2);
 }
@@ -70,9 +70,9 @@ inline Sym3<Real> PointInverseMass(const InverseMass<Real>& mass, const Vec3<Rea
     const Real xx = x * x, yy = y * y, zz = z * z, xy = x * y, xz = x * z, yz = y * z;
     const Real two(2.0f);
     Sym3<Real> k;
-    k.xx = mass.mass + (zz * i.yy - two * (yz * i.yz) + yy * i.zz);
-    k.yy = mass.mass + (zz * i.xx - two * (xz * i.xz) + xx * i.zz);
-    k.zz = mass.mass + (yy * i.xx - two * (xy * i.xy) + xx * i.yy);
+    k.xx = mass.mass.x() + (zz * i.yy - two * (yz * i.yz) + yy * i.zz);
+    k.yy = mass.mass.y() + (zz * i.xx - two * (xz * i.xz) + xx * i.zz);
+    k.zz = mass.mass.z() + (yy * i.xx - two * (xy * i.xy) + xx * i.yy);
     k.xy = xz * i.yz + yz * i.xz - zz * i.xy - xy * i.zz;
     k.xz = yz * i.xy + xy * i.yz - xz * i.yy - yy * i.xz;
     k.yz = xz * i.xy + xy * i.xz - yz * i.xx - xx * i.yz;

@@ -40,8 +40,8 @@ template <BodySide kSide1 = BodySide::Dynamic, BodySide kSide2 = BodySide::Dynam
 FULCRUM_FORCE_INLINE RowResponse<Real> ResponseOf(const RowJacobian<Real>& j, const InverseMass<Real>& mass1,
                                                   const InverseMass<Real>& mass2) {
     RowResponse<Real> response;
-    if constexpr (HasMass(kSide1)) response.a = {j.a.linear * -mass1.mass, -(mass1.inertia * j.a.angular)};
-    if constexpr (HasMass(kSide2)) response.b = {j.b.linear * mass2.mass, mass2.inertia * j.b.angular};
+    if constexpr (HasMass(kSide1)) response.a = {j.a.linear.cwiseProduct(-mass1.mass), -(mass1.inertia * j.a.angular)};
+    if constexpr (HasMass(kSide2)) response.b = {j.b.linear.cwiseProduct(mass2.mass), mass2.inertia * j.b.angular};
     return response;
 }
 

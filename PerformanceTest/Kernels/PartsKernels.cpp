@@ -50,12 +50,12 @@ void GatherMass(World& world, const int (&bodies)[N], InverseMass<Wide<N>>& mass
     for (int i = 0; i < N; ++i) rows[i] = world.masses[bodies[i]].Row();
     GatherRows<N>(rows, wide);
     mass.inertia = {wide[0], wide[1], wide[2], wide[3], wide[4], wide[5]};
-    mass.mass = wide[6];
+    mass.mass = Vec3<Wide<N>>(wide[6], wide[6], wide[6]);
 }
 void GatherMass(World& world, const int (&bodies)[1], InverseMass<float>& mass) {
     const float* m = world.masses[bodies[0]].Row();
     mass.inertia = {m[0], m[1], m[2], m[3], m[4], m[5]};
-    mass.mass = m[6];
+    mass.mass = Vector3::Constant(m[6]);
 }
 template <int N>
 void Scatter(World& world, const int (&bodies)[N], const Twist<Wide<N>>& velocity) {

@@ -188,9 +188,9 @@ FULCRUM_INLINE_IN_LOOP void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
     }
     // Displacements are zero between steps.
     auto& [linear, angular, nearFixed, marks, deltaPosition, deltaRotation, halfTurn] = state;
-    auto& [inverseInertia, inverseMass, turns] = mass;
+    auto& [inverseInertia, inverseMass, flags] = mass;
     auto& [rotation, acceleration, boundsChangedIn, position, innerRadius, spare] = pose;
-    s(linear, angular, nearFixed, marks, inverseInertia, inverseMass, turns, rotation, acceleration, boundsChangedIn,
+    s(linear, angular, nearFixed, marks, inverseInertia, inverseMass, flags, rotation, acceleration, boundsChangedIn,
       position, innerRadius, dynamics, remainder.value, remainder.isGiven);
     if (dynamics.hasForce) s(cold.force, cold.torque);
     else if constexpr (!Stream::kWrites) cold.force = cold.torque = Vector3::Zero();

@@ -91,7 +91,7 @@ bool NoteSquaredGaps(const Batch& batch, const Real& squared, const GapScale& sc
 }
 
 template <class Real>
-Real SquaredSizeOf(const InverseMass<Real>& inverse) {
+Real SquaredSizeOf(const UniformInverseMass<Real>& inverse) {
     return SquaredSize<Real>(inverse.mass, inverse.inertia.xx + inverse.inertia.yy + inverse.inertia.zz);
 }
 

@@ -93,7 +93,9 @@ Array<DispersingBody> PlanDispersing(const CollisionView& view, const JointedGro
 // Adjusts the acceleration for the rest of this step: UpdateBounds has already set it, with gravity for all but
 // dispersing bodies.
 void AddGravity(const SystemSettings& settings, BodyStore& bodies, uint32_t body, float factor) {
-    const Vector3 gravity = bodies.GravityOf(body, settings.gravity) * (factor * bodies.dynamics[body].gravityFactor);
+    const BodyDynamics& dynamics = bodies.dynamics[body];
+    const Vector3 gravity =
+        dynamics.AlongFreeTranslations(bodies.GravityOf(body, settings.gravity) * (factor * dynamics.gravityFactor));
     for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] += gravity[k];
 }
 

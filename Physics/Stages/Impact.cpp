@@ -32,7 +32,7 @@ public:
             if (!stores.bodies.CanMove(bodies[s])) continue;
             const BodyDynamics& d = stores.bodies.dynamics[bodies[s]];
             const MassOverride& o = hit.massOverride;
-            InverseMass<float> inverse{d.inverseMass, impact.masses[s].InverseInertia()};
+            UniformInverseMass<float> inverse{d.inverseMass, impact.masses[s].InverseInertia()};
             if (s == 0) ScaleMass(inverse, o.inverseMassScaleA, o.inverseInertiaScaleA);
             else ScaleMass(inverse, o.inverseMassScaleB, o.inverseInertiaScaleB);
             side_[s] = {inverse.inertia, Vector3::Constant(inverse.mass)};

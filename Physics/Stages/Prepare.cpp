@@ -79,6 +79,8 @@ void Fill(const ContactSource& from, ContactBatch<N, kFixedB>& batch, WorkerFind
     if (from.hasCrowds) [[unlikely]]
         LimitPushes(from.bodies, batch);
     NoteDeepest(from.pairs, batch, findings);
+    if (batch.isGuided) [[unlikely]]
+        LimitGuidedPushes(batch);
     batch.hasNotes = false;
     if (!from.notes) return;
     for (int lane = 0; lane < batch.count; ++lane)

@@ -114,6 +114,7 @@ void UpdateBounds(const StepContext& step, const PairStore& pairs, const SensorS
                                        (dynamics.dispersing ? 0.0f : dynamics.gravityFactor);
                 if (dynamics.hasForce) acceleration += bodies.cold[body].force * dynamics.inverseMass;
                 if (dynamics.frozen) acceleration.setZero();
+                if (dynamics.LockedTranslations() != 0) acceleration = dynamics.AlongFreeTranslations(acceleration);
                 for (int k = 0; k < 3; ++k) bodies.poses[body].acceleration[k] = acceleration[k];
             }
             UpdateColliders(step, body, bodies, colliders, findings);

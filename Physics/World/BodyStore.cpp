@@ -152,8 +152,10 @@ BodyMass BodyStore::MassAlong(uint32_t index, const Matrix3& axes) const {
     const BodyDynamics& d = dynamics[index];
     BodyMass m;
     if (d.frozen) return m;
-    m.inverseMass = d.inverseMass;
-    m.turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic ? 1.0f : 0.0f;
+    m.inverseMass = d.LockedTranslations() == 7 ? 0 : d.inverseMass;
+    const bool turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic;
+    const unsigned locked = d.LocksSomeTranslations() ? d.LockedTranslations() * BodyMass::kLockedX : 0;
+    m.flags = static_cast<float>(locked + (turns ? BodyMass::kTurns : 0));
     const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
     SymmetricMatrix3 i;
     if (d.spherical) i.xx = i.yy = i.zz = inverse.x();

@@ -70,6 +70,14 @@ struct alignas(64) BodyDynamics {
     }
     static constexpr float kLeastGyroscopicSpeed = 0.1f;  // rad/s
     bool HasGyroscopicTorque() const { return gyroscopic && !spherical && !LocksRotation(); }
+    unsigned LockedTranslations() const { return static_cast<unsigned>(lockedAxes) & 7u; }  // bits: x, y, z
+    Vector3 AlongFreeTranslations(Vector3 v) const {
+        Vector3 none = Vector3::Zero();
+        Lock(v, none);
+        return v;
+    }
+    // Some, and not all of them: the body moves along a line or in a plane.
+    bool LocksSomeTranslations() const { return LockedTranslations() != 0 && LockedTranslations() != 7; }
     bool LocksRotation() const { return (static_cast<unsigned>(lockedAxes) & 56u) != 0; }
     Quaternion PrincipalAxes() const {
         return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};

@@ -1,4 +1,7 @@
 // What a body is told to be: locked, layered, moved by hand, added, removed, read.
+#include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Physics/Joints/PointJoint.h>
 #include <Fulcrum/Physics/SettingsFields.h>
 #include <Fulcrum/UnitTests/Support/FieldNames.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
@@ -75,6 +78,88 @@ TEST(LockedAxes, ContactsDoNotPushAlongLockedAxes) {
     const Vector3 w = world.Bodies().GetAngularVelocity(rail);
     EXPECT_EQ(w.x(), 0);
     EXPECT_EQ(w.y(), 0);
+}
+
+constexpr LockedAxes kNoTranslation = LockedAxes::TranslationX | LockedAxes::TranslationY | LockedAxes::TranslationZ;
+constexpr LockedAxes kOnRailAlongX = LockedAxes::TranslationY | LockedAxes::TranslationZ | LockedAxes::Rotation;
+
+// Half in the floor, and held there: rows that counted on the locked translation gave their bodies spin in each
+// substep.
+TEST(LockedAxes, AnOverlapAlongALockedAxisDoesNotSpinABody) {
+    for (const int substeps : {1, 4, 16})
+        for (const double dt : {1.0 / 240, 1.0 / 60, 0.1})
+            for (const double lean : {0.0, 0.3, 0.8, 1.2, 1.5})
+                for (const double tilt : {0.0, 0.02, 0.1, 0.4, 0.8, 1.2}) {
+                    SystemSettings settings = NoSleep();
+                    settings.solver.substeps = substeps;
+                    TestWorld world(settings);
+                    world.Add({.shape = Plane::Create().Value(), .motion = MotionType::Static});
+                    const BodyId id = world.Add(
+                        {.shape = TaperedCapsule::Create(0.9f, 0.4f, 0.7f).Value(),
+                         .position = {0, 0.25, 0},
+                         .rotation = RotationAbout(Vector3::UnitX(), lean) * RotationAbout(Vector3::UnitZ(), tilt),
+                         .angularVelocity = {-2, -2, 0},
+                         .lockedAxes = LockedAxes::TranslationY | LockedAxes::TranslationZ | LockedAxes::RotationZ});
+                    float fastest = 0;
+                    for (int i = 0; i < 120; ++i) {
+                        world.Step(dt);
+                        fastest = std::max(fastest, Length(world.Bodies().GetAngularVelocity(id)));
+                    }
+                    EXPECT_LT(fastest, 4)
+                        << substeps << " substeps of " << dt << " s, lean " << lean << ", tilt " << tilt;
+                }
+}
+
+// As on a static shelf, although it has a tenth to a thousandth of the mass.
+TEST(LockedAxes, AHeavyBoxRestsOnALightShelf) {
+    for (const LockedAxes locks : {kNoTranslation | LockedAxes::Rotation, kOnRailAlongX})
+        for (const int substeps : {1, 4, 16})
+            for (const float mass : {1.0f, 100.0f, 10000.0f}) {
+                SystemSettings settings = NoSleep();
+                settings.solver.substeps = substeps;
+                TestWorld world(settings);
+                world.Add({.shape = BoxOf(1, 0.1f, 1), .position = {0, 0, 0}, .mass = 10.0f, .lockedAxes = locks});
+                const BodyId box = world.Add({.shape = CubeOf(0.5f), .position = {0, 0.6, 0}, .mass = mass});
+                world.Run(5);
+                EXPECT_NEAR(world.PositionOf(box).y(), 0.6, 0.001) << substeps << " substeps, " << mass << " kg";
+                EXPECT_LT(Length(world.Bodies().GetLinearVelocity(box)), 1e-6f);
+            }
+}
+
+// A ball of m kg swings from a cart of M kg, on a rail or held in place. On the rail both swing about their common
+// center of mass along x.
+TEST(LockedAxes, APendulumSwingsFromALightCart) {
+    for (const LockedAxes locks : {kNoTranslation | LockedAxes::Rotation, kOnRailAlongX})
+        for (const float mass : {10.0f, 100.0f, 1000.0f}) {
+            SystemSettings settings = NoSleep();
+            settings.solver.substeps = 16;
+            TestWorld world(settings);
+            const BodyId cart = world.Add(
+                {.shape = BoxOf(0.3f, 0.1f, 0.3f), .position = {0, 0, 0}, .mass = 10.0f, .lockedAxes = locks});
+            const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = {1, 0, 0}, .mass = mass});
+            PointJointSettings settingsOfJoint;
+            settingsOfJoint.bodyA = cart;
+            settingsOfJoint.bodyB = ball;
+            settingsOfJoint.anchorA = JointAnchor{.point = {0, 0, 0}};
+            settingsOfJoint.anchorB = settingsOfJoint.anchorA;
+            const JointId joint = world.System().Joints().Create(settingsOfJoint).Value();
+            const bool onRail = locks == kOnRailAlongX;
+            const double center = onRail ? double{mass} / double{10 + mass} : 0;
+            float gap = 0;
+            double lowest = 0;
+            for (int i = 0; i < 300; ++i) {
+                world.Step();
+                gap = std::max(gap, world.System().Joints().GetError(joint).distance);
+                lowest = std::min(lowest, world.PositionOf(ball).y());
+                if (onRail) {
+                    EXPECT_NEAR((10 * world.PositionOf(cart).x() + double{mass} * world.PositionOf(ball).x()) /
+                                    double{10 + mass},
+                                center, 0.001);
+                }
+            }
+            EXPECT_LT(gap, 0.002f) << mass << " kg";
+            EXPECT_NEAR(lowest, -1, 0.01) << mass << " kg";
+        }
 }
 
 TEST(Layers, OnlyCollidingLayersHaveContacts) {

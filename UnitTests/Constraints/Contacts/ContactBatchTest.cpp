@@ -209,7 +209,7 @@ void Momentum(const RandomContacts& contacts, uint32_t contact, Position& linear
     for (uint32_t body = 2 * contact; body < 2 * contact + 2; ++body) {
         const Twist<float> v = contacts.VelocityOf(body);
         const InverseMass<float> m = contacts.MassOf(body);
-        const Position p = v.linear.cast<double>() / double(m.mass);
+        const Position p = v.linear.cast<double>() / double(m.mass.x());
         linear += p;
         angular += Times(InertiaOf(m), v.angular.cast<double>()) + contacts.PoseOf(body).position.cross(p);
     }
@@ -240,7 +240,7 @@ double KineticEnergy(const RandomContacts& contacts, uint32_t contact) {
         const Twist<float> v = contacts.VelocityOf(body);
         const InverseMass<float> m = contacts.MassOf(body);
         const Position w = v.angular.cast<double>();
-        sum += 0.5 * v.linear.cast<double>().squaredNorm() / double(m.mass) + 0.5 * w.dot(Times(InertiaOf(m), w));
+        sum += 0.5 * v.linear.cast<double>().squaredNorm() / double(m.mass.x()) + 0.5 * w.dot(Times(InertiaOf(m), w));
     }
     return sum;
 }

@@ -66,7 +66,7 @@ private:
             const auto& i = body.mass.inertia;
             const float rows[6] = {i.xx, i.yy, i.zz, i.xy, i.xz, i.yz};
             for (int k = 0; k < 6; ++k) mass.inverseInertia[k] = rows[k];
-            mass.inverseMass = body.mass.mass;
+            mass.inverseMass = body.mass.mass.x();
             pose.acceleration[1] = -9.81f;
         }
         const Vector3 axis = AnyDirection(random);

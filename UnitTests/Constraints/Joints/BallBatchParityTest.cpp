@@ -23,7 +23,7 @@ void Move(RandomJoints& joints, float h) {
         for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
         // As if it had turned.
         BodyMass& mass = joints.masses[body];
-        if (mass.turns > 0)
+        if (static_cast<int>(mass.flags) & BodyMass::kTurns)
             for (float& x : mass.inverseInertia) x *= 1.1f;
     }
 }

@@ -49,7 +49,7 @@ Solved Solve(std::span<const JointCase> cases, uint32_t seed, const RandomJoints
             }
             // As if it had turned.
             BodyMass& mass = joints.masses[body];
-            if (mass.turns > 0)
+            if (static_cast<int>(mass.flags) & BodyMass::kTurns)
                 for (float& x : mass.inverseInertia) x *= 1.1f;
         }
         for (int pass = 0; pass < 2; ++pass) {

@@ -32,7 +32,7 @@ inline RandomJoints RandomBalls(uint32_t count, uint32_t seed, const BallOptions
         float(&inertia)[6] = joints.masses[i].inverseInertia;
         inertia[1] = inertia[2] = inertia[0];
         inertia[3] = inertia[4] = inertia[5] = 0;
-        joints.masses[i].turns = 0;
+        joints.masses[i].flags = 0;
     }
     return joints;
 }

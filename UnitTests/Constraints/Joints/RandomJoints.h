@@ -257,7 +257,7 @@ private:
         const float rows[6] = {inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.xz, inertia.yz};
         std::copy(rows, rows + 6, masses[body].inverseInertia);
         masses[body].inverseMass = random_.Between(0.5f, 2.0f);
-        masses[body].turns = random_.Between(0.0f, 1.0f) < 0.3f ? 1.0f : 0.0f;
+        masses[body].flags = random_.Between(0.0f, 1.0f) < 0.3f ? 1.0f : 0.0f;
     }
 
     void Add(uint32_t joint, const JointCase& how) {

@@ -317,8 +317,8 @@ TEST(GearPart, KeepsItsPhaseOverManyTurns) {
 TEST(IndependentAxisPart, RopePullsAndNeverPushes) {
     const float g = 9.81f, h = 0.01f;
     InverseMass<float> m1, m2;
-    m1.mass = 1.0f / 2.0f;
-    m2.mass = 1.0f / 5.0f;
+    m1.mass = Vector3::Constant(1.0f / 2.0f);
+    m2.mass = Vector3::Constant(1.0f / 5.0f);
     const Vector3 down(0, -1, 0), none = Vector3::Zero();
     const IndependentAxisFrame<float> frame{none, none, down, down * 2.0f};
     Twist<float> v1{Vector3(0, -g * h, 0), none}, v2 = v1;
@@ -342,7 +342,7 @@ TEST(IndependentAxisPart, RopePullsAndNeverPushes) {
 TEST(RackAndPinionPart, RackTakesTheSpeedOfTheTeeth) {
     InverseMass<float> pinion, rack;
     pinion.inertia.zz = 1.0f / 0.02f;
-    rack.mass = 1.0f / 3.0f;
+    rack.mass = Vector3::Constant(1.0f / 3.0f);
     Twist<float> v1, v2;
     v1.angular = Vector3(0, 0, 5);
     testing::OneRowPart<float> part;

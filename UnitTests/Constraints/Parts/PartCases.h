@@ -78,9 +78,9 @@ inline Dense3 DenseInertia(const InverseMass<float>& mass) {
 inline Eigen::Matrix<double, 12, 12> DenseInverseMass(const InverseMass<float>& mass1,
                                                       const InverseMass<float>& mass2) {
     Eigen::Matrix<double, 12, 12> m = Eigen::Matrix<double, 12, 12>::Zero();
-    m.block<3, 3>(0, 0) = Dense3::Identity() * static_cast<double>(mass1.mass);
+    m.block<3, 3>(0, 0) = ToDense(mass1.mass).asDiagonal();
     m.block<3, 3>(3, 3) = DenseInertia(mass1);
-    m.block<3, 3>(6, 6) = Dense3::Identity() * static_cast<double>(mass2.mass);
+    m.block<3, 3>(6, 6) = ToDense(mass2.mass).asDiagonal();
     m.block<3, 3>(9, 9) = DenseInertia(mass2);
     return m;
 }

@@ -103,7 +103,7 @@ TYPED_TEST(PartTest, ImpulsesKeepMomentum) {
             const auto momentum = [&] {
                 Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
                 for (const RandomBody* body : {&pair.a, &pair.b}) {
-                    const Position p = body->velocity.linear.cast<double>() / static_cast<double>(body->mass.mass);
+                    const Position p = body->velocity.linear.cast<double>() / static_cast<double>(body->mass.mass.x());
                     sum.head(3) += ToDense(p);
                     sum.tail(3) += ToDense(body->position.cast<double>().cross(p)) +
                                    testing::DenseInertia(body->mass).inverse() * ToDense(body->velocity.angular);

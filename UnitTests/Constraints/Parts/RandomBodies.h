@@ -26,7 +26,7 @@ inline RandomBody MakeBody(RandomPoses& random) {
     RandomBody body;
     body.position = random.InBox(2.0f);
     body.velocity = {random.InBox(3.0f), random.InBox(3.0f)};
-    body.mass.mass = random.Between(0.1f, 2.0f);
+    body.mass.mass = Vector3::Constant(random.Between(0.1f, 2.0f));
     const Vector3 axis = AnyDirection(random);
     const float w = random.Between(-1.0f, 1.0f);
     const Matrix3 rotation = ToMatrix(Normalized(Quaternion{axis.x(), axis.y(), axis.z(), w}));
@@ -38,7 +38,7 @@ inline RandomBody MakeBody(RandomPoses& random) {
 // Another inverse mass, and the inverse inertia scaled: parts act on whatever masses they are given.
 inline InverseMass<float> OverrideMass(const InverseMass<float>& mass, float inverseMass, float inverseInertiaScale) {
     InverseMass<float> result = mass;
-    result.mass = inverseMass;
+    result.mass = Vector3::Constant(inverseMass);
     for (float* x : {&result.inertia.xx, &result.inertia.yy, &result.inertia.zz, &result.inertia.xy, &result.inertia.xz,
                      &result.inertia.yz})
         *x *= inverseInertiaScale;
@@ -90,7 +90,7 @@ void PutLane(Twist<Wide<N>>& twist, int lane, const Twist<float>& from) {
 }
 template <int N>
 void PutLane(InverseMass<Wide<N>>& mass, int lane, const InverseMass<float>& from) {
-    mass.mass.Set(lane, from.mass);
+    for (int k = 0; k < 3; ++k) mass.mass[k].Set(lane, from.mass[k]);
     mass.inertia.xx.Set(lane, from.inertia.xx);
     mass.inertia.yy.Set(lane, from.inertia.yy);
     mass.inertia.zz.Set(lane, from.inertia.zz);

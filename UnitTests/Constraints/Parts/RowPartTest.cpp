@@ -101,7 +101,7 @@ TEST(RowPart, TotalImpulseIsClamped) {
         EXPECT_TRUE(pair.Solve(0.0f, 0.0f));
         EXPECT_EQ(pair.part.GetTotalLambda(), 0.0f);
         const Vector3 gained = pair.a.velocity.linear - before.linear;
-        EXPECT_NEAR(Length(Vector3(gained - pair.frame.axis * (pair.a.mass.mass * lambda))), 0.0f, 1e-6f);
+        EXPECT_NEAR(Length(Vector3(gained - pair.frame.axis * (pair.a.mass.mass.x() * lambda))), 0.0f, 1e-6f);
     }
 }
 
@@ -177,7 +177,7 @@ TEST(RowPart, MassOverrideShiftsTheImpulse) {
     // Head-on, 1 kg each at +-1 m/s, no arms: as they are both stop; with body 1 as of 4 kg the common velocity is
     // (4 - 1) / 5 = 0.6, reached by impulses over the overridden masses.
     RandomBody a, b;
-    a.mass.mass = b.mass.mass = 1.0f;
+    a.mass.mass = b.mass.mass = Vector3::Constant(1.0f);
     a.velocity = {Vector3(1, 0, 0), Vector3::Zero()};
     b.velocity = {Vector3(-1, 0, 0), Vector3::Zero()};
     const InverseMass<float> heavy = testing::OverrideMass(a.mass, 0.25f, 1.0f);
@@ -216,8 +216,8 @@ TEST(RowPart, PositionPassTakesTheBaumgarteShareOfTheError) {
     }
     // Along an axis through both centers nothing turns, so the constraint itself shrinks by exactly that factor.
     RandomBody a, b;
-    a.mass.mass = 1.0f;
-    b.mass.mass = 0.5f;
+    a.mass.mass = Vector3::Constant(1.0f);
+    b.mass.mass = Vector3::Constant(0.5f);
     float gap = -0.1f;
     RowPart<float> part;
     for (int pass = 0; pass < 5; ++pass) {
@@ -291,7 +291,7 @@ TEST(RowPart, WarmStartAppliesTheTotalImpulse) {
     const Twist<float> before = pair.b.velocity;
     pair.part.WarmStart(pair.a.velocity, pair.b.velocity);
     EXPECT_EQ(pair.part.GetTotalLambda(), 0.2f);
-    const Vector3 expected = before.linear + pair.frame.axis * (pair.b.mass.mass * 0.2f);
+    const Vector3 expected = before.linear + pair.frame.axis * (pair.b.mass.mass.x() * 0.2f);
     EXPECT_LT(Length(Vector3(pair.b.velocity.linear - expected)), 1e-6f);
 }
 
