@@ -1,4 +1,4 @@
-# Installs the library so that find_package(Fulcrum 0.1) and pkg-config find it: headers, libraries, package files, license.
+# Installs the library so that find_package(Fulcrum 0.2) and pkg-config find it: headers, libraries, package files, license.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
