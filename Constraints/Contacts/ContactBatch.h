@@ -157,10 +157,10 @@ template <int N, bool kFixedB>
 uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* records, const ConstSolverBodies& bodies,
                          const ContactPrepareSettings& settings);
 
-// After PrepareContacts, for a batch with `isGuided`: limits the depths of the rows, and scales them by the square of
-// the share of their response that the locked translations leave. A row that can move a body by its rotation alone
-// would rotate it by the overlap over the lever arm, however short that is, and two such rows that contradict each
-// other would spin it up.
+// After PrepareContacts, for a batch with `isGuided`: scales the depths of the rows by the square of the share of the
+// bodies' mobility that the locked translations leave, and limits them where that is small. A row that can move a body
+// by its rotation alone would rotate it by the overlap over the lever arm, however short that is, and two such rows
+// that contradict each other would spin it up.
 template <int N, bool kFixedB>
 void LimitGuidedPushes(ContactBatch<N, kFixedB>& batch);
 

@@ -45,12 +45,17 @@ struct Responses {
     }
 };
 
-// Relative to the response without locks: rows with a smaller one are inactive. Their bodies could only separate by a
-// rotation that is ten thousand times as fast.
-constexpr float kLeastShare = 1e-4f;
+template <class Real>
+Real InverseOrZero(Real x) {
+    return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
+}
 
-// Overlaps across locked translations count as no deeper than this fraction of 1 / inverseSoftDepth.
-constexpr float kDeepestGuided = 0.5f;
+// Relative to the response without locks: rows with a smaller one are under-relaxed.
+constexpr float kLeastShare = 0.25f;
+
+// Overlaps of bodies with less than kSmallShare of their mobility count as no deeper than this fraction of 1 /
+// inverseSoftDepth.
+constexpr float kDeepestGuided = 0.5f, kSmallShare = 0.5f;
 
 // Sets ContactBatch::isGuided and `locks` from BodyMass::flags.
 template <int N, bool kFixedB>
@@ -91,49 +96,77 @@ LockedMobility<Wide<N>> LockedMobilityOf(const ContactBatch<N, kFixedB>& batch) 
     return locked;
 }
 
-// `response` less what the locks take; zero if too little is left. Lanes without locks stay bit-identical.
-template <class Real>
-Real WithoutLocked(const Real& response, const Real& locked) {
-    const Real left = response - locked;
-    return Select((locked > Real(0.0f)) & (left < response * Real(kLeastShare)), Real(0.0f), left);
-}
-
 template <int N, bool kFixedB>
 [[gnu::noinline, gnu::cold]] void RemoveLocked(const ContactBatch<N, kFixedB>& batch, Responses<Wide<N>>& responses) {
     const LockedMobility<Wide<N>> locked = LockedMobilityOf(batch);
     responses.normal[0] -= locked.nn;
-    responses.friction[0] = WithoutLocked(responses.friction[0], locked.t1t1);
-    responses.friction[1] = WithoutLocked(responses.friction[1], locked.t2t2);
+    responses.friction[0] -= locked.t1t1;
+    responses.friction[1] -= locked.t2t2;
     responses.friction[3] -= locked.t1t2;
     responses.coupling[0][0] -= locked.nt1;
     responses.coupling[0][1] -= locked.nt2;
 }
 
-// Makes rows inactive whose response the locks take.
+// The mobility of a point along a direction, and how much of it there is relative to that without locks: an average
+// over the bodies, weighted by their mobility. offset: of the point from the manifold's center, m.
+template <class Real>
+struct GuidedMobility {
+    Real all{0.0f}, share{0.0f};
+
+    // The factor by which its row is under-relaxed.
+    Real Relaxation() const { return Min(Real(1.0f), Real(share * Real(1.0f / kLeastShare))); }
+};
 template <int N, bool kFixedB>
-[[gnu::noinline, gnu::cold]] void DropLockedRows(ContactBatch<N, kFixedB>& batch) {
+GuidedMobility<Wide<N>> GuidedMobilityOf(const ContactBatch<N, kFixedB>& batch, const Vec3<Wide<N>>& direction,
+                                         const Vec3<Wide<N>>& offset) {
+    using Real = Wide<N>;
+    GuidedMobility<Real> mobility;
+    const auto add = [&](int side, const UniformInverseMass<Real>& inverse, const Vec3<Real>& arm) {
+        const Vec3<Real> turned = Cross<Real>(Vec3<Real>(arm + offset), direction);
+        const Real angular = Dot<Real>(turned, Vec3<Real>(inverse.inertia * turned));
+        Real own = angular;
+        for (int k = 0; k < 3; ++k)
+            own += Select(LockedLanes<N>(batch.locks, 3 * side + k), Real(0.0f),
+                          Real(inverse.mass * direction[k] * direction[k]));
+        mobility.all += own;
+        mobility.share += own * own * InverseOrZero(Real(inverse.mass + angular));
+    };
+    add(0, batch.inverseA, batch.armA);
+    if constexpr (!kFixedB) add(1, batch.sideB.inverse, batch.sideB.arm);
+    mobility.share = mobility.share * InverseOrZero(mobility.all);
+    return mobility;
+}
+template <int N, bool kFixedB>
+GuidedMobility<Wide<N>> GuidedMobilityOf(const ContactBatch<N, kFixedB>& batch,
+                                         const typename ContactBatch<N, kFixedB>::Row& row) {
+    using Real = Wide<N>;
+    return GuidedMobilityOf(batch, batch.normal, Vec3<Real>(batch.tangent1 * row.a + batch.tangent2 * row.b));
+}
+
+// Where the locks leave bodies only a direction far off that of a row, such as a rotation by a short lever arm, they
+// would have to move many times as fast as the point along it, and what rows that contradict each other do not solve
+// would be many times as much energy. Such rows are under-relaxed. Lanes without locks stay bit-identical.
+template <int N, bool kFixedB>
+[[gnu::noinline, gnu::cold]] void RelaxGuidedRows(ContactBatch<N, kFixedB>& batch) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     const LockedMobility<Real> locked = LockedMobilityOf(batch);
+    const auto relax = [&](const Real& taken, const GuidedMobility<Real>& mobility, Real& inverse, Real& impulse) {
+        const auto isGuided = (taken > zero) & (inverse > zero);
+        inverse = Select(isGuided, InverseOrZero(mobility.all) * mobility.Relaxation(), inverse);
+        impulse = Select((taken > zero) & (inverse <= zero), zero, impulse);
+    };
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
-        // 1 / (1 + inverseResponse locked) is the share of the response that is left.
-        const auto kept = (locked.nn <= zero) |
-                          ((row.inverseResponse > zero) & (row.inverseResponse * locked.nn < Real(1.0f / kLeastShare)));
-        row.inverseResponse = Select(kept, row.inverseResponse, zero);
-        row.impulse = Select(kept, row.impulse, zero);
+        relax(locked.nn, GuidedMobilityOf(batch, row), row.inverseResponse, row.impulse);
     }
-    const auto drop = [&](int k, const Real& taken) {
-        const auto kept = (taken <= zero) | (batch.frictionInverse[k] > zero);
-        batch.frictionImpulse[k] = Select(kept, batch.frictionImpulse[k], zero);
-    };
-    drop(0, locked.t1t1);
-    drop(1, locked.t2t2);
-}
-
-template <class Real>
-Real InverseOrZero(Real x) {
-    return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
+    const Vec3<Real> center(zero, zero, zero);
+    const auto along1 = GuidedMobilityOf(batch, batch.tangent1, center),
+               along2 = GuidedMobilityOf(batch, batch.tangent2, center);
+    relax(locked.t1t1, along1, batch.frictionInverse[0], batch.frictionImpulse[0]);
+    relax(locked.t2t2, along2, batch.frictionInverse[1], batch.frictionImpulse[1]);
+    const Real most = Max(along1.Relaxation(), along2.Relaxation());
+    batch.slideMass = Select(locked.t1t1 + locked.t2t2 > zero, batch.slideMass * most, batch.slideMass);
 }
 
 // Mask of the lanes whose numbers are all finite. Extreme masses, sizes and speeds may overflow a float when combined.
@@ -400,7 +433,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         }
     }
     if (batch.isGuided) [[unlikely]]
-        DropLockedRows(batch);
+        RelaxGuidedRows(batch);
     if constexpr (kFixedB)
         if (isMarked && settings.surfaceVelocities)
             AddSurfaceMotion(batch, head[Record::kMarks], settings.surfaceVelocities, settings.dt);
@@ -413,13 +446,15 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
 template <int N, bool kFixedB>
 void LimitGuidedPushes(ContactBatch<N, kFixedB>& batch) {
     using Real = Wide<N>;
-    const Real locked = LockedMobilityOf(batch).nn, one(1.0f), zero(0.0f);
+    const Real locked = LockedMobilityOf(batch).nn, zero(0.0f);
+    const Real deepest = Real(-kDeepestGuided) / batch.inverseSoftDepth;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
-        const Real share = one / (one + row.inverseResponse * locked),
-                   depth = Max(row.separation, Real(-kDeepestGuided) / batch.inverseSoftDepth);
+        const Real share = GuidedMobilityOf(batch, row).share;
+        const Real limited =
+            Select(share < Real(kSmallShare), Max(row.separation, deepest), row.separation) * share * share;
         const auto limits = (locked > zero) & (row.separation < zero);
-        row.startSeparation = row.separation = Select(limits, depth * share * share, row.separation);
+        row.startSeparation = row.separation = Select(limits, limited, row.separation);
     }
 }
 

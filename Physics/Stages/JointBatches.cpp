@@ -10,13 +10,13 @@ using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
 
 // Joints of the same kind may share a batch: same locks, or ball joints (BallBatch.h) of round or other bodies. Joints
-// with mass overrides, or of bodies with some locked translations, are not solved as ball joints.
+// with mass overrides, or of bodies with locked translations, are not solved as ball joints.
 enum JointKind : uint32_t { kRoundBall = 9, kBall = 10 };
 uint32_t KindOf(uint32_t kind) { return kind >> 8; }
 bool IsBall(uint32_t kind) { return KindOf(kind) >= kRoundBall; }
 
 uint32_t KindOf(const BodyStore& bodies, const Joint& joint) {
-    const auto isGuided = [&](int side) { return bodies.dynamics[joint.body[side]].LocksSomeTranslations(); };
+    const auto isGuided = [&](int side) { return bodies.dynamics[joint.body[side]].LockedTranslations() != 0; };
     if (joint.locks.linear != LinearLock::Point || joint.locks.angular != AngularLock::None || joint.maxRows > 0 ||
         joint.overridesMass || isGuided(0) || isGuided(1))
         return static_cast<uint32_t>(joint.locks.linear) * 3 + static_cast<uint32_t>(joint.locks.angular);

@@ -63,8 +63,7 @@ void LocalIterations::MarkBodies(const ContactBatch<N, false>& batch, uint8_t su
         if (!(batch.unsolved >> lane & 1)) continue;
         const uint32_t a = batch.bodyA[lane], b = batch.bodyB[lane];
         const float massA = bodies_.masses[a].inverseMass, massB = bodies_.masses[b].inverseMass;
-        const float least = std::min(massA, massB);  // 0 if all translations are locked
-        if (!(least > 0) || std::max(massA, massB) < kLeastMassRatio * least) continue;
+        if (std::max(massA, massB) < kLeastMassRatio * std::min(massA, massB)) continue;
         if (joints_.HasAny(a) || joints_.HasAny(b)) continue;
         memory_.wrongIn[a] = memory_.wrongIn[b] = static_cast<uint8_t>(substep + 1);
         lastWrong_.store(substep + 1, std::memory_order_relaxed);

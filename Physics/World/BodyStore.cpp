@@ -152,10 +152,9 @@ BodyMass BodyStore::MassAlong(uint32_t index, const Matrix3& axes) const {
     const BodyDynamics& d = dynamics[index];
     BodyMass m;
     if (d.frozen) return m;
-    m.inverseMass = d.LockedTranslations() == 7 ? 0 : d.inverseMass;
+    m.inverseMass = d.inverseMass;
     const bool turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic;
-    const unsigned locked = d.LocksSomeTranslations() ? d.LockedTranslations() * BodyMass::kLockedX : 0;
-    m.flags = static_cast<float>(locked + (turns ? BodyMass::kTurns : 0));
+    m.flags = static_cast<float>(d.LockedTranslations() * BodyMass::kLockedX + (turns ? BodyMass::kTurns : 0));
     const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
     SymmetricMatrix3 i;
     if (d.spherical) i.xx = i.yy = i.zz = inverse.x();

@@ -76,8 +76,6 @@ struct alignas(64) BodyDynamics {
         Lock(v, none);
         return v;
     }
-    // Some, and not all of them: the body moves along a line or in a plane.
-    bool LocksSomeTranslations() const { return LockedTranslations() != 0 && LockedTranslations() != 7; }
     bool LocksRotation() const { return (static_cast<unsigned>(lockedAxes) & 56u) != 0; }
     Quaternion PrincipalAxes() const {
         return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};

@@ -1,5 +1,6 @@
 // The same scene gives the same bits, however many threads compute it and however often.
 #include <Fulcrum/UnitTests/Support/FastScene.h>
+#include <Fulcrum/UnitTests/Support/GuidedScene.h>
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/SurfaceScene.h>
@@ -47,6 +48,11 @@ TEST(Determinism, SurfacesAreTheSameForAnyNumberOfThreads) {
 TEST(Determinism, FastBodiesAreTheSameForAnyNumberOfThreads) {
     const uint64_t one = HashOfFastScene(1);
     for (uint32_t threads : {2u, 3u, 4u}) EXPECT_EQ(HashOfFastScene(threads), one) << threads;
+}
+
+TEST(Determinism, GuidedBodiesAreTheSameForAnyNumberOfThreads) {
+    const uint64_t one = HashOfGuidedScene(1);
+    for (uint32_t threads : {2u, 3u, 4u}) EXPECT_EQ(HashOfGuidedScene(threads), one) << threads;
 }
 
 TEST(Determinism, EveryStepOfJointsIsTheSameForAnyNumberOfThreads) {

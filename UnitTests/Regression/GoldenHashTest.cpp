@@ -1,7 +1,8 @@
-// Golden hashes of the mixed scene and of those of joints, surfaces and fast bodies. Every build must give them:
-// scalar, SSE2 and AVX2 lanes, gcc and clang, any number of threads. A change of the engine that is meant to change
-// results writes the new numbers here, which the failure prints.
+// Golden hashes of the mixed scene and of those of joints, surfaces, fast bodies and locked axes. Every build must give
+// them: scalar, SSE2 and AVX2 lanes, gcc and clang, any number of threads. A change of the engine that is meant to
+// change results writes the new numbers here, which the failure prints.
 #include <Fulcrum/UnitTests/Support/FastScene.h>
+#include <Fulcrum/UnitTests/Support/GuidedScene.h>
 #include <Fulcrum/UnitTests/Support/JointScene.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/SurfaceScene.h>
@@ -16,6 +17,7 @@ constexpr uint64_t kGoldenHash = 0x5900fec7f3525decull;
 constexpr uint64_t kGoldenHashOfJoints = 0x5d34c25859753576ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x593636f81a286878ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x022a9e2488d02425ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0xca3c3e721ee41c37ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
@@ -41,6 +43,11 @@ TEST(GoldenHash, OfTheSurfaceScene) {
 TEST(GoldenHash, OfTheFastScene) {
     const uint64_t hash = HashOfFastScene(1);
     EXPECT_EQ(hash, kGoldenHashOfFastBodies) << "This build gives kGoldenHashOfFastBodies = " << Hex(hash);
+}
+
+TEST(GoldenHash, OfTheGuidedScene) {
+    const uint64_t hash = HashOfGuidedScene(1);
+    EXPECT_EQ(hash, kGoldenHashOfGuidedBodies) << "This build gives kGoldenHashOfGuidedBodies = " << Hex(hash);
 }
 
 }  // namespace

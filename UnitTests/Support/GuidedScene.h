@@ -1,0 +1,12 @@
+// Bodies with locked axes, in all combinations, fall on each other, and some are joined: the scene for comparing
+// builds, threads and versions of locked translations.
+#pragma once
+
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+namespace fulcrum::testing {
+
+// Hash of the whole state after 90 steps with so many threads. Adds a failure where a body has left its line or plane.
+uint64_t HashOfGuidedScene(uint32_t threads);
+
+}  // namespace fulcrum::testing
