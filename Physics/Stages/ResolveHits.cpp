@@ -122,8 +122,10 @@ private:
                 isLast |= Swept(place).IsCrowdedWithHits();
             }
         if (hit.isBlocked || !impact.isFinite || (isLast && isUndecided)) {
-            // With its arriving velocity: an impulse applied to only one of the two would create energy.
-            Wait(places[0], hit.time, impact, 0, impact.arrivingLinear[0], impact.arrivingAngular[0]);
+            // With its arriving velocity: an impulse applied to only one of the two would create energy. One that waits
+            // already is not cast again: the same hit would be found in every round.
+            if (!Swept(places[0]).waits)
+                Wait(places[0], hit.time, impact, 0, impact.arrivingLinear[0], impact.arrivingAngular[0]);
         } else if (lostPartner) {
             CastAgain(places[0]);
         } else if (isUndecided) {
