@@ -174,10 +174,7 @@ Result<BatchIds> BodyInterface::Commit(const BodyBatch& batch) {
         MaybeError error = CheckJointBodies(CommonOf(joint), motionOf);
         if (!error) types.push_back(std::visit([](const auto& settings) { return MakeType(settings); }, joint));
         if (!error && !types.back()) error = Error{ErrorCode::Unsupported, "make: gave no joint type"};
-        if (error) {
-            const auto place = static_cast<size_t>(&joint - batch.Joints().data());
-            return Error{error->code, "joints[" + std::to_string(place) + "]: " + error->message};
-        }
+        if (error) return InList("joints", static_cast<size_t>(&joint - batch.Joints().data()), *error);
     }
     size_t colliders = 0;
     for (const BodySettings& settings : batch.Bodies()) colliders += ColliderCountOf(*settings.shape);
