@@ -27,8 +27,8 @@ Result<BodyBatch> BodyBatch::Prepare(std::vector<BodySettings> bodies, std::vect
         return bodies[IndexOf(id)].motion;
     };
     for (size_t i = 0; i < joints.size(); ++i) {
-        const MaybeError error = FirstOf(CheckJointBodies(CommonOf(joints[i]), motionOf),
-                                         std::visit([](const auto& settings) { return Check(settings); }, joints[i]));
+        const MaybeError error = FirstOf(std::visit([](const auto& settings) { return Check(settings); }, joints[i]),
+                                         CheckJointBodies(CommonOf(joints[i]), motionOf));
         if (error) return InList("joints", i, *error);
     }
     return BodyBatch(std::move(bodies), std::move(joints));
