@@ -31,6 +31,7 @@ inline uint64_t HashBytes(const void* bytes, size_t size, uint64_t seed = kHashS
     uint64_t a = seed, b = seed + 1, c = seed + 2, d = seed + 3, e = seed + 4, f = seed + 5, g = seed + 6, h = seed + 7;
     size_t left = size;
     for (; left >= 64; left -= 64, at += 64) {
+        __builtin_prefetch(at + 4096);  // processors themselves prefetch to the end of a page only
         a = HashWord(a, wordAt(0));
         b = HashWord(b, wordAt(1));
         c = HashWord(c, wordAt(2));

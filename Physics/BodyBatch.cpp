@@ -12,9 +12,13 @@ const JointSettings& CommonOf(const BodyBatch::Joint& joint) {
     return std::visit([](const auto& settings) -> const JointSettings& { return settings; }, joint);
 }
 
+Error InList(const char* list, size_t index, const Error& error) {
+    return {error.code, std::string(list) + "[" + std::to_string(index) + "]: " + error.message};
+}
+
 Result<BodyBatch> BodyBatch::Prepare(std::vector<BodySettings> bodies, std::vector<Joint> joints) {
     for (size_t i = 0; i < bodies.size(); ++i)
-        if (MaybeError e = Check(bodies[i])) return Error{e->code, "bodies[" + std::to_string(i) + "]: " + e->message};
+        if (MaybeError error = Check(bodies[i])) return InList("bodies", i, *error);
     // Whether a body of the world exists and is dynamic is known when the batch is added.
     const auto motionOf = [&](BodyId id) -> std::optional<MotionType> {
         if (id == kWorldBody) return MotionType::Static;
@@ -23,9 +27,9 @@ Result<BodyBatch> BodyBatch::Prepare(std::vector<BodySettings> bodies, std::vect
         return bodies[IndexOf(id)].motion;
     };
     for (size_t i = 0; i < joints.size(); ++i) {
-        const MaybeError e = FirstOf(CheckJointBodies(CommonOf(joints[i]), motionOf),
-                                     std::visit([](const auto& settings) { return Check(settings); }, joints[i]));
-        if (e) return Error{e->code, "joints[" + std::to_string(i) + "]: " + e->message};
+        const MaybeError error = FirstOf(std::visit([](const auto& settings) { return Check(settings); }, joints[i]),
+                                         CheckJointBodies(CommonOf(joints[i]), motionOf));
+        if (error) return InList("joints", i, *error);
     }
     return BodyBatch(std::move(bodies), std::move(joints));
 }

@@ -61,6 +61,9 @@ private:
     std::vector<Joint> joints_;
 };
 
+// The error of an element of Bodies() or Joints(): "joints[2]: ...".
+Error InList(const char* list, size_t index, const Error& error);
+
 // The settings shared by all kinds.
 JointSettings& CommonOf(BodyBatch::Joint& joint);
 const JointSettings& CommonOf(const BodyBatch::Joint& joint);

@@ -171,13 +171,9 @@ Result<BatchIds> BodyInterface::Commit(const BodyBatch& batch) {
     std::vector<std::unique_ptr<JointType>> types;
     types.reserve(batch.Joints().size());
     for (const BodyBatch::Joint& joint : batch.Joints()) {
-        MaybeError error = CheckJointBodies(CommonOf(joint), motionOf);
-        if (!error) types.push_back(std::visit([](const auto& settings) { return MakeType(settings); }, joint));
-        if (!error && !types.back()) error = Error{ErrorCode::Unsupported, "make: gave no joint type"};
-        if (error) {
-            const auto place = static_cast<size_t>(&joint - batch.Joints().data());
-            return Error{error->code, "joints[" + std::to_string(place) + "]: " + error->message};
-        }
+        auto type = std::visit([&](const auto& settings) { return MakeCheckedType(settings, motionOf); }, joint);
+        if (!type) return InList("joints", types.size(), type.GetError());
+        types.push_back(std::move(type.Value()));
     }
     size_t colliders = 0;
     for (const BodySettings& settings : batch.Bodies()) colliders += ColliderCountOf(*settings.shape);

@@ -158,11 +158,10 @@ Result<JointId> JointInterface::Create(const Settings& settings) {
     const WorldChange<&JointInterface::Create<Settings>> change(world_, settings);
     if (change.Refusal()) return *change.Refusal();
     const auto motionOf = [&](BodyId id) { return MotionOf(world_, id); };
-    if (MaybeError error = CheckJointBodies(settings, motionOf)) return *error;
     if (MaybeError error = Check(settings)) return *error;
-    std::unique_ptr<JointType> type = MakeType(settings);
-    if (!type) return Error{ErrorCode::Unsupported, "make: gave no joint type"};
-    return change.template Created<JointId>(Add(settings, std::move(type)));
+    Result<std::unique_ptr<JointType>> type = MakeCheckedType(settings, motionOf);
+    if (!type) return type.GetError();
+    return change.template Created<JointId>(Add(settings, std::move(type.Value())));
 }
 
 #define FULCRUM_INSTANTIATE(kind) template Result<JointId> JointInterface::Create(const kind##JointSettings&);

@@ -285,7 +285,7 @@ CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMot
         const double step = advance.Step(remaining);
         if (step >= remaining) return {};
         fraction += step;
-        if (fraction > double{limits.maxFraction}) return {};
+        if (fraction > limits.maxFraction) return {};
         last = now;
     }
     return HitAt(Outcome::Early, fraction, last.axis.cast<double>(), last.onA);
@@ -320,7 +320,7 @@ CoreCastResult CastTurning(const ConvexShape& a, const ConvexShape& b, const Cor
     };
     const double reach = (double{a.OuterRadius()} + b.OuterRadius()) * (1 + 1e-6) + limits.separation + tolerance;
     const MotionPart part = PartWithin(motion, reach);
-    if (!(part.from <= part.to) || part.from > double{limits.maxFraction}) return {};
+    if (!(part.from <= part.to) || part.from > limits.maxFraction) return {};
     return Advance(a, b, motion, limits, tolerance, separate, part.from, part.to);
 }
 

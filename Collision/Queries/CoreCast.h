@@ -34,9 +34,9 @@ struct CoreMotion {
 };
 
 struct CoreCastLimits {
-    float maxFraction = 1;  // of the motion, 0 .. 1
-    float separation = 0;   // m, >= 0: the target distance: closer shapes count as touching
-    float tolerance = 0;    // m, >= 0: allowed additional separation at a hit; at least the rounding error
+    double maxFraction = 1;  // of the motion, >= 0
+    float separation = 0;    // m, >= 0: the target distance: closer shapes count as touching
+    float tolerance = 0;     // m, >= 0: allowed additional separation at a hit; at least the rounding error
 };
 
 struct CoreCastResult {

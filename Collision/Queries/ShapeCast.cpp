@@ -22,6 +22,15 @@ Bounds BoundsOfTurning(const ConvexShape& shape, const ShapeMotion& motion) {
     return Inflated({Vector3::Zero(), Vector3::Zero()}, shape.OuterRadius() * 1.000001f);
 }
 
+// Whether a hit is within maxFraction is decided when it is rounded to float: shapes that are hit at the same fraction
+// are then found in any order, each within the fraction of the other. The search goes as much further.
+CoreCastLimits LimitsOf(const ShapeCastSettings& settings) {
+    return {double{settings.maxFraction} * (1 + 0x1p-22), settings.separation, settings.tolerance};
+}
+bool IsWithin(const CoreCastResult& cast, const ShapeCastSettings& settings) {
+    return cast.IsHit() && static_cast<float>(cast.fraction) <= settings.maxFraction;
+}
+
 }  // namespace
 
 bool ShapeCastSettings::IsValid() const {
@@ -88,12 +97,11 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     if (!IsWithinReach(motion.position)) return false;
     const bool isOneSided = piece.triangle && !piece.isTwoSided && !settings.backFaces;
     if (isOneSided && !motion.IsTurning() && Dot(motion.displacement, piece.triangle->Normal()) > 0) return false;
-    const CoreCastResult cast =
-        CastCore(piece.shape, shape_, motion, {settings.maxFraction, settings.separation, settings.tolerance}, method_);
-    if (!cast.IsHit()) return false;
+    const CoreCastResult cast = CastCore(piece.shape, shape_, motion, LimitsOf(settings), method_);
+    if (!IsWithin(cast, settings)) return false;
     hit = {};
     hit.subShape = piece.subShape;
-    hit.fraction = std::min(static_cast<float>(cast.fraction), settings.maxFraction);
+    hit.fraction = static_cast<float>(cast.fraction);
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
         if (!settings.measureDepth && !settings.ignoreSeparating) return true;
@@ -118,11 +126,10 @@ bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCas
     const Plane& plane = static_cast<const Plane&>(shape);
     const CoreMotion motion = RelativeTo(pose);
     if (!IsWithinReach(motion.position)) return false;
-    const CoreCastResult cast = CastToPlane(plane.Normal(), double{plane.Offset()}, shape_, motion,
-                                            {settings.maxFraction, settings.separation, settings.tolerance});
-    if (!cast.IsHit()) return false;
+    const CoreCastResult cast = CastToPlane(plane.Normal(), double{plane.Offset()}, shape_, motion, LimitsOf(settings));
+    if (!IsWithin(cast, settings)) return false;
     hit = {};
-    hit.fraction = std::min(static_cast<float>(cast.fraction), settings.maxFraction);
+    hit.fraction = static_cast<float>(cast.fraction);
     hit.normal = Rotate(pose.rotation, plane.Normal());
     hit.position = pose.Transform(cast.onA);
     hit.isEarly = cast.status == CoreCastResult::Status::Early;

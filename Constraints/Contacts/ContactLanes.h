@@ -34,4 +34,22 @@ void VisitLane(ContactBatch<N, kFixedB>& batch, int lane, ContactBatch<1, kFixed
         copy(FloatAt(batch, Region::kBegin, i, N, lane), FloatAt(single, Single::kBegin, i, 1, 0));
 }
 
+// Writes the contact of a lane to a batch of its own.
+template <int N, bool kFixedB>
+void ReadLane(ContactBatch<N, kFixedB>& batch, int lane, ContactBatch<1, kFixedB>& single) {
+    VisitLane(batch, lane, single, [](const void* from, void* to) { std::memcpy(to, from, sizeof(float)); });
+    single.contact[0] = batch.contact[lane];
+    single.bodyA[0] = batch.bodyA[lane];
+    single.bodyB[0] = batch.bodyB[lane];
+    single.count = 1;
+    single.pointCount = batch.pointCount;
+    single.bounces = batch.bounces;
+    single.hasNotes = batch.hasNotes;
+    single.hasSurface = batch.hasSurface;
+    single.gentle = batch.gentle >> lane & 1;
+    single.isGuided = batch.isGuided;
+    single.locks[0] = batch.locks[lane];
+    single.inverseSoftDepth = batch.inverseSoftDepth[lane];
+}
+
 }  // namespace fulcrum::contacts

@@ -60,6 +60,15 @@ struct alignas(32) ContactRecord {
         return total;
     }
 
+    void ForgetFriction() {
+        for (float& f : frictionImpulse) f = 0;
+        twistImpulse = 0;
+    }
+    void ForgetImpulses() {
+        for (float& f : impulse) f = 0;
+        ForgetFriction();
+    }
+
     // Features that few contacts have, as bits.
     enum Mark { kSurfaceVelocity = 1, kMassOverride = 2, kSensed = 4, kRecollided = 8, kApart = 16 };
     // kSensed: the contact is an event, but not solved

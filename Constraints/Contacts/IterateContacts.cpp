@@ -9,19 +9,7 @@ template <int N, bool kFixedB>
 bool IterateContact(ContactBatch<N, kFixedB>& batch, int lane, float overRelaxation, BodyState* states,
                     const ContactSolveSettings& settings, bool relax) {
     ContactBatch<1, kFixedB> single;
-    VisitLane(batch, lane, single, [](const void* from, void* to) { std::memcpy(to, from, sizeof(float)); });
-    single.contact[0] = batch.contact[lane];
-    single.bodyA[0] = batch.bodyA[lane];
-    single.bodyB[0] = batch.bodyB[lane];
-    single.count = 1;
-    single.pointCount = batch.pointCount;
-    single.bounces = batch.bounces;
-    single.hasNotes = batch.hasNotes;
-    single.hasSurface = batch.hasSurface;
-    single.gentle = batch.gentle >> lane & 1;
-    single.isGuided = batch.isGuided;
-    single.locks[0] = batch.locks[lane];
-    single.inverseSoftDepth = batch.inverseSoftDepth[lane];
+    ReadLane(batch, lane, single);
     for (int i = 0; i < batch.pointCount; ++i)
         single.rows[i].inverseResponse = single.rows[i].inverseResponse * Wide<1>(overRelaxation);
     if (relax) SolveAllRows<Pass::Relax>(single, states, settings);

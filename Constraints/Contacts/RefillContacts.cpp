@@ -42,11 +42,8 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
                    float elapsed) {
     using Real = Wide<1>;
     ContactBatch<1, kFixedB> before{}, after{};
-    VisitLane(batch, lane, before, [](const void* from, void* to) { std::memcpy(to, from, sizeof(float)); });
-    before.count = after.count = 1;
-    before.pointCount = batch.pointCount;
-    before.isGuided = batch.isGuided;
-    before.locks[0] = batch.locks[lane];
+    ReadLane(batch, lane, before);
+    after.count = 1;
     MoveOutOfWarmStart(before, freeA, freeB, 1.0f);
     const ContactRecord& record = records[batch.contact[lane]];
     if (record.Has(ContactRecord::kApart)) {

@@ -92,6 +92,20 @@ struct JointErrors {
     Vec2<Real> hinge = Vec2<Real>(Real(0.0f), Real(0.0f));
 };
 
+// Of a joint that is far apart along its line: the lever arm along it. The way along the line is a gap, too, as far as
+// limits are exceeded. No longer than some radii of gyration, 1 / radius^2 being inverse inertia / inverse mass; bodies
+// without inertia do not spin.
+template <class Real>
+FULCRUM_FORCE_INLINE Vec3<Real> ReachAlongLine(const Vec3<Real>& offset, const Vec3<Real>& line,
+                                               const InverseMass<Real>& mass) {
+    constexpr float kMostReach = 4;
+    const Real along = Dot<Real>(offset, line),
+               perRadius = (mass.inertia.xx + mass.inertia.yy + mass.inertia.zz) * Real(1.0f / 3),
+               square = Real(kMostReach * kMostReach) * Max(Max(mass.mass.x(), mass.mass.y()), mass.mass.z()),
+               part = Min(Real(1.0f), Sqrt(square / Max(along * along * perRadius, Real(1e-30f))));
+    return line * (along * Select(perRadius > Real(0.0f), part, Real(1.0f)));
+}
+
 // Sets the parts up, hard and without bias, and returns the errors. If joints are far apart, their velocity rows are
 // set up as if the anchors coincided: lever arms as long as the gap would spin up small bodies.
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -121,16 +135,7 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         errors.line = Vec2<Real>(Dot<Real>(place.offset, n1), Dot<Real>(place.offset, n2));
         Vec3<Real> reach = place.offset;
         if (batch.far) {
-            // The way along the line is a gap, too, as far as limits are exceeded. No longer than some radii of
-            // gyration, 1 / radius^2 being inverse inertia / inverse mass; bodies without inertia do not spin.
-            constexpr float kMostReach = 4;
-            const Sym3<Real>& inertia = batch.massA.inertia;
-            const Vec3<Real>& mass = batch.massA.mass;
-            const Real along = Dot<Real>(place.offset, place.line),
-                       perRadius = (inertia.xx + inertia.yy + inertia.zz) * Real(1.0f / 3),
-                       square = Real(kMostReach * kMostReach) * Max(Max(mass.x(), mass.y()), mass.z()),
-                       part = Min(Real(1.0f), Sqrt(square / Max(along * along * perRadius, Real(1e-30f))));
-            const Vec3<Real> shorter = place.line * (along * Select(perRadius > Real(0.0f), part, Real(1.0f)));
+            const Vec3<Real> shorter = ReachAlongLine<Real>(place.offset, place.line, batch.massA);
             for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), shorter[k], reach[k]);
         }
         batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2});

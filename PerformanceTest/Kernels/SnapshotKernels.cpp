@@ -1,5 +1,5 @@
-// Snapshots of a heap of so many bodies, all awake: to save, to restore what was two steps ago, to hash; deltas from
-// step to step.
+// Snapshots of a heap of so many bodies, all awake: to save, to restore what was two steps ago, from the caches and
+// from memory, to hash; deltas from step to step.
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
@@ -80,6 +80,30 @@ void RestoreSnapshot(benchmark::State& state) {
     }
 }
 BENCHMARK(RestoreSnapshot)->Arg(1000)->Arg(3000)->Unit(benchmark::kMicrosecond);
+
+// Two snapshots in turn. evicts: other data has displaced them and the world from the caches each time.
+void RestoreSnapshotInTurn(benchmark::State& state, bool evicts) {
+    const auto system = MakeHeap(state.range(0));
+    Bytes snapshots[2];
+    Save(*system, snapshots[0]);
+    for (int step = 0; step < 2; ++step)
+        if (!system->Update(kStep)) AbortWith("a step", "");
+    Save(*system, snapshots[1]);
+    std::vector<char> others(evicts ? 64 << 20 : 0);
+    size_t turn = 0;
+    for (auto _ : state) {
+        if (evicts) {
+            state.PauseTiming();
+            for (size_t i = 0; i < others.size(); i += 64) ++others[i];
+            benchmark::ClobberMemory();
+            state.ResumeTiming();
+        }
+        if (const Status restored = system->RestoreSnapshot(snapshots[turn++ % 2]); !restored)
+            AbortWith("restoring: ", restored.GetError().message);
+    }
+}
+BENCHMARK_CAPTURE(RestoreSnapshotInTurn, InCache, false)->Arg(1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(RestoreSnapshotInTurn, FromMemory, true)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void HashState(benchmark::State& state) {
     const auto system = MakeHeap(state.range(0));

@@ -109,7 +109,7 @@ std::vector<std::string> DifferencesOfMachines(const SavedRuns& now, const Saved
     compare("processor", baseline.cpu, now.cpu);
     compare("cores", std::to_string(baseline.cores), std::to_string(now.cores));
     compare("compiler", baseline.compiler, now.compiler);
-    compare("lanes", baseline.lanes, now.lanes);
+    compare("lanes", std::to_string(baseline.lanes), std::to_string(now.lanes));
     return differences;
 }
 

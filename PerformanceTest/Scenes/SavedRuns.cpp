@@ -1,13 +1,10 @@
 #include <Fulcrum/PerformanceTest/Scenes/SavedRuns.h>
 
-#include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/PerformanceTest/Scenes/ReferenceKernel.h>
 #include <Fulcrum/PerformanceTest/Scenes/SampleStatistics.h>
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
-#include <Fulcrum/Version.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 
 namespace fulcrum {
@@ -56,24 +53,16 @@ const SavedRun* SavedRuns::Find(const std::string& scene, int threads) const {
 }
 
 Json NewDocument() {
-    const char* commit = std::getenv("FULCRUM_COMMIT");
-    return {{"schema", kSavedRunsSchema},
-            {"program", "fulcrum-bench"},
-            {"version", FULCRUM_VERSION_STRING},
-            {"date", UtcNow()},
-            {"commit", commit && *commit ? Json(commit) : Json()},
-            {"machine", {{"cpu", CpuModel()}, {"cores", CoreCount()}}},
-            {"compiler", CompilerName()},
-            {"lanes", std::to_string(kLanes)},
-            {"kernel", kReferenceKernelVersion},
-            {"units",
-             {{"*_ms", "milliseconds of wall clock"},
-              {"relative_times", "median_ms of a run in units of the reference kernel around it"},
-              {"*_m", "meters"},
-              {"*_m_s", "meters a second"},
-              {"*_j", "joules"},
-              {"*_s", "seconds"},
-              {"accuracy", "what ./fulcrum run says of the scene"}}}};
+    Json document = FileHead("fulcrum-bench");
+    document["kernel"] = kReferenceKernelVersion;
+    document["units"] = {{"*_ms", "milliseconds of wall clock"},
+                         {"relative_times", "median_ms of a run in units of the reference kernel around it"},
+                         {"*_m", "meters"},
+                         {"*_m_s", "meters a second"},
+                         {"*_j", "joules"},
+                         {"*_s", "seconds"},
+                         {"accuracy", "what ./fulcrum run says of the scene"}};
+    return document;
 }
 
 Result<SavedRuns> ParseSavedRuns(const Json& document, const std::string& file) {
@@ -82,8 +71,8 @@ Result<SavedRuns> ParseSavedRuns(const Json& document, const std::string& file) 
                      "has no schema number, so it was not saved by `bench --save`, or by an older version; save it "
                      "anew");
     const Json& schema = document["schema"];
-    if (schema != kSavedRunsSchema)
-        return Wrong(file, "has schema " + schema.dump() + ", this version reads " + std::to_string(kSavedRunsSchema) +
+    if (schema != kFileSchema)
+        return Wrong(file, "has schema " + schema.dump() + ", this version reads " + std::to_string(kFileSchema) +
                                "; save it anew with `bench --save`");
     SavedRuns saved;
     saved.file = file;
@@ -92,7 +81,7 @@ Result<SavedRuns> ParseSavedRuns(const Json& document, const std::string& file) 
         saved.date = TextOf(document, "date");
         saved.commit = TextOf(document, "commit");
         saved.compiler = TextOf(document, "compiler");
-        saved.lanes = TextOf(document, "lanes");
+        saved.lanes = document.at("lanes").get<int>();
         saved.kernel = document.at("kernel").get<int>();
         saved.cpu = TextOf(document.at("machine"), "cpu");
         saved.cores = document.at("machine").at("cores").get<int>();

@@ -13,9 +13,6 @@
 
 namespace fulcrum {
 
-// Increment with each change after which older files cannot be read.
-inline constexpr int kSavedRunsSchema = 1;
-
 // The data of a scene with a number of threads that a comparison needs.
 struct SavedRun {
     std::string scene;
@@ -33,15 +30,15 @@ struct SavedRun {
 
 struct SavedRuns {
     std::string file;  // as it was named
-    std::string date, commit, cpu, compiler, lanes;
-    int cores = 0, kernel = 0;
+    std::string date, commit, cpu, compiler;
+    int lanes = 0, cores = 0, kernel = 0;
     std::vector<SavedRun> runs;
 
     const SavedRun* Find(const std::string& scene, int threads) const;
 };
 
-// The document: schema, date, machine, build and units, without runs. Numbers that are not finite become null when it
-// is written. The commit is that of the environment's FULCRUM_COMMIT, which ./fulcrum sets.
+// The document: FileHead, version of the reference kernel and units, without runs. Numbers that are not finite become
+// null when it is written.
 nlohmann::ordered_json NewDocument();
 
 // Errors OutOfRange: the message names the file and what is wrong with it.

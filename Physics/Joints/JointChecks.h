@@ -3,9 +3,12 @@
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/AngularControls.h>
+#include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Physics/JointSettings.h>
 #include <Fulcrum/Physics/Validation.h>
+
+#include <memory>
 
 namespace fulcrum {
 
@@ -24,6 +27,17 @@ private:
 
 // The two bodies of a joint. motionOf(id): none if no body has the id.
 MaybeError CheckJointBodies(const JointSettings& settings, FunctionRef<std::optional<MotionType>(BodyId)> motionOf);
+
+// The type of a joint whose settings have passed their Check. Errors: those of CheckJointBodies; Unsupported (the
+// function of a custom joint gave no type).
+template <class Settings>
+Result<std::unique_ptr<JointType>> MakeCheckedType(const Settings& settings,
+                                                   FunctionRef<std::optional<MotionType>(BodyId)> motionOf) {
+    if (MaybeError error = CheckJointBodies(settings, motionOf)) return *error;
+    std::unique_ptr<JointType> type = MakeType(settings);
+    if (!type) return Error{ErrorCode::Unsupported, "make: gave no joint type"};
+    return type;
+}
 
 // Rotation of an anchor's frame, x along its axis, in the space in which it is given.
 Quaternion RotationOf(const JointAnchor& anchor);

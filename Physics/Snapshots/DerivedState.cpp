@@ -29,7 +29,7 @@ void SnapshotAccess::Resize(ColliderStore& colliders, uint32_t count) {
 
 void SnapshotAccess::Resize(PairStore& pairs, uint32_t count) {
     for (uint32_t i = count; i < pairs.pairs.size(); ++i)
-        if (const uint64_t key = PlaceOf(pairs.pairs[i]).key; key != kNoKey) pairs.RemoveKey(key, i);
+        if (const PairPlace place = PlaceOf(pairs.pairs[i]); place.isInTable) pairs.RemoveKey(place.Key(), i);
     // While pairs are read the table also contains the previous ones.
     if (size_t places = std::max<size_t>(pairs.table_.size(), 1024);
         2 * size_t{count} > places || pairs.table_.empty()) {

@@ -29,23 +29,21 @@ inline void SnapshotAccess::ListColor(ConstraintColoring& coloring, ConstraintCo
 }
 
 inline void SnapshotAccess::AttachPair(const ColliderStore& colliders, bool areBodiesSame, PairStore& store,
-                                       ConstraintColoring& coloring, uint32_t index, const PairPlace& before) {
+                                       uint32_t index, const PairPlace& before) {
     // Few pairs differ from the previous ones.
-    const PairPlace place = PlaceOf(store.pairs[index]);
-    if (place.key != before.key) {
-        if (before.key != kNoKey) store.RemoveKey(before.key, index);
-        if (place.key != kNoKey) store.AddKey(place.key, index);
-    }
     Pair& pair = store.pairs[index];
+    const PairPlace place = PlaceOf(pair);
+    if (place != before) {
+        if (before.isInTable) store.RemoveKey(before.Key(), index);
+        if (place.isInTable) store.AddKey(place.Key(), index);
+    }
     if (!pair.exists) return;
-    if (!areBodiesSame || place != before || place.key == kNoKey) {
+    if (!areBodiesSame || place != before || !place.isInTable) {
         pair.bodyA = colliders.colliders[pair.colliderA].body;
         pair.bodyB = colliders.colliders[pair.colliderB].body;
     }
     FULCRUM_ASSERT(pair.bodyA == colliders.colliders[pair.colliderA].body &&
                    pair.bodyB == colliders.colliders[pair.colliderB].body);
-    if (pair.contact != PairStore::kNone)
-        ListColor(coloring, KindOf(pair), EntryOf(pair), store.contacts[pair.contact].color);
 }
 
 namespace {
@@ -251,6 +249,19 @@ void RestoreJoints(SnapshotReader& s, Found& found, JointStore& joints, Constrai
     }
 }
 
+// See SnapshotAccess::VisitPairs.
+struct PairAttachment {
+    WorldState& world;
+    bool areBodiesSame;
+
+    FULCRUM_INLINE_IN_LOOP void OfPair(uint32_t pair, const SnapshotAccess::PairPlace& before) const {
+        SnapshotAccess::AttachPair(world.colliders, areBodiesSame, world.pairs, pair, before);
+    }
+    FULCRUM_INLINE_IN_LOOP void OfContact(const Pair& pair, const ColorSlot& color) const {
+        SnapshotAccess::ListColor(world.coloring, KindOf(pair), EntryOf(pair), color);
+    }
+};
+
 // State that a step keeps for the next step, and its report.
 void RestoreStep(SnapshotReader& s, WorldState& world, StepState& step) {
     SavedEfforts& efforts = step.savedEfforts;
@@ -299,9 +310,7 @@ Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sou
     SnapshotAccess::UpdateTrees(world.bodies, world.colliders);
     SnapshotAccess::ClearColors(world.bodies.Size(), world.coloring);
     SnapshotAccess::Resize(world.pairs, found.head.pairs);
-    SnapshotAccess::VisitPairs(s, world.pairs, [&](uint32_t pair, const SnapshotAccess::PairPlace& before) {
-        SnapshotAccess::AttachPair(world.colliders, areBodiesSame, world.pairs, world.coloring, pair, before);
-    });
+    SnapshotAccess::VisitPairs(s, world.pairs, PairAttachment{world, areBodiesSame});
     RestoreJoints(s, found, world.joints, world.coloring);
     SnapshotAccess::VisitSleeping(s, world.sleeping);
     SnapshotAccess::VisitSensors(s, world.sensors, world.sensors.changed);

@@ -3,8 +3,12 @@
 // and the hash table of pairs. Called by the functions of Snapshots.h; one thread.
 #pragma once
 
+#include <Fulcrum/Math/ForceInline.h>
 #include <Fulcrum/Physics/Snapshots/SnapshotElements.h>
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
+
+#include <bit>
+#include <utility>
 
 namespace fulcrum {
 
@@ -22,11 +26,11 @@ inline constexpr uint64_t kNoShape = 0, kOwnCompound = 2;
 
 // A class, since it is a friend of the stores.
 struct SnapshotAccess {
-    // The key of a pair in the hash table, kNoKey if it is not there, and which of the two colliders is A.
-    static constexpr uint64_t kNoKey = ~uint64_t{0};
+    // Whether a pair is in the hash table, and its colliders.
     struct PairPlace {
-        uint64_t key = kNoKey;
-        uint32_t colliderA = 0;
+        bool isInTable = false;
+        uint32_t colliderA = 0, colliderB = 0;
+        uint64_t Key() const { return PairStore::Key(colliderA, colliderB); }
         bool operator==(const PairPlace&) const = default;
     };
 
@@ -38,7 +42,8 @@ struct SnapshotAccess {
     static void VisitBodies(Stream& s, Bodies& bodies);
     template <class Stream, class Colliders>
     static void VisitColliders(Stream& s, Colliders& colliders);
-    // attach(i, before): called for each index; before: PlaceOf the previous pair at that index.
+    // attach.OfPair(i, before) is called for each index when its pair has been visited; before: PlaceOf the previous
+    // one. attach.OfContact(pair, color): then for its contact, if there is one.
     template <class Stream, class Pairs, class Attach>
     static void VisitPairs(Stream& s, Pairs& pairs, const Attach& attach);
     // Indices of removed pairs.
@@ -70,18 +75,22 @@ struct SnapshotAccess {
     static bool AttachPieces(const BodyStore& bodies, ColliderStore& colliders);
     static void ListMoved(ColliderStore& colliders);
     static void UpdateTrees(const BodyStore& bodies, ColliderStore& colliders);
-    // a pair's bodies and shapes, its entries in the hash table and in the lists of colors; those of joints.
+    // a pair's bodies and shapes, its entry in the hash table; entries in the lists of colors.
     static void ClearColors(uint32_t bodies, ConstraintColoring& coloring);
-    // areBodiesSame: result of AttachPieces; before: the pair's previous PlaceOf.
-    static void AttachPair(const ColliderStore& colliders, bool areBodiesSame, PairStore& pairs,
-                           ConstraintColoring& coloring, uint32_t index, const PairPlace& before);
+    // areBodiesSame: result of AttachPieces; before: the previous PlaceOf the pair at this index.
+    static void AttachPair(const ColliderStore& colliders, bool areBodiesSame, PairStore& pairs, uint32_t index,
+                           const PairPlace& before);
     static void ListColor(ConstraintColoring& coloring, ConstraintColoring::Kind kind,
                           const ConstraintColoring::Entry& entry, const ColorSlot& place);
 
 private:
     static PairPlace PlaceOf(const Pair& pair) {
         if (!pair.exists || pair.isMore) return {};
-        return {PairStore::Key(pair.colliderA, pair.colliderB), pair.colliderA};
+        return {true, pair.colliderA, pair.colliderB};
+    }
+    static void SetWord(IndexSet& set, uint32_t word, uint64_t bits) {
+        set.size_ += static_cast<uint32_t>(std::popcount(bits) - std::popcount(set.words_[word]));
+        set.words_[word] = bits;
     }
 };
 
@@ -100,14 +109,8 @@ void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
     auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
            targetCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] = bodies;
     s.Begin(SnapshotSection::Bodies);
-    InLoop<Stream> stream = s;
-    for (uint32_t i = 0; i < cold.size(); ++i) {
-        stream.Reserve(kMostOfBody);
-        VisitBody(stream, bodies, i);
-        EndElement(stream, i);
-    }
-    if constexpr (!Stream::kWrites) s = stream;
-    s.EndBlock();
+    VisitElements(s, bodies.Size(), kMostOfBody,
+                  [&](auto& stream, uint32_t i) FULCRUM_FORCE_INLINE_LAMBDA { VisitBody(stream, bodies, i); });
     s.Begin(SnapshotSection::BodyLists);
     s.Reserve(64);
     s(continuousCount, targetCount, count, reportsContacts.size_);
@@ -124,14 +127,10 @@ void SnapshotAccess::VisitColliders(Stream& s, Colliders& store) {
     auto& [colliders, shapes, boundsOrigin, staticTree, movingTree, sensorTree, movingLayers, staticLayers, moved,
            movedHasEmpty, runs, free, freeRuns] = store;
     s.Begin(SnapshotSection::Colliders);
-    InLoop<Stream> stream = s;
-    for (uint32_t i = 0; i < colliders.size(); ++i) {
-        stream.Reserve(kMostOfCollider);
-        VisitCollider(stream, colliders[i], !shapes[i].shape);
-        EndElement(stream, i);
-    }
-    if constexpr (!Stream::kWrites) s = stream;
-    s.EndBlock();
+    VisitElements(s, static_cast<uint32_t>(colliders.size()), kMostOfCollider,
+                  [&](auto& stream, uint32_t i) FULCRUM_FORCE_INLINE_LAMBDA {
+                      VisitCollider(stream, store.colliders[i], !store.shapes[i].shape);
+                  });
     s.Begin(SnapshotSection::ColliderLists);
     s.Reserve(64);
     s(boundsOrigin, movingLayers, staticLayers, movedHasEmpty);
@@ -148,49 +147,48 @@ void SnapshotAccess::VisitPairs(Stream& s, Pairs& store, const Attach& attach) {
            keepsReported] = store;
     s.Begin(SnapshotSection::Pairs);
     const auto count = static_cast<uint32_t>(pairs.size());
-    InLoop<Stream> stream = s;
-    for (uint32_t i = 0; i < count; ++i) {
+    uint64_t activeOfWord = 0;
+    VisitElements(s, count, kMostOfPair, [&](auto& stream, uint32_t i) FULCRUM_FORCE_INLINE_LAMBDA {
         // References once: bytes that are read may alias the arrays' own members.
-        auto& pair = pairs[i];
-        auto& link = links[i];
-        auto& load = loads[i];
+        auto& pair = store.pairs[i];
+        auto& link = store.links_[i];
+        auto& load = store.loads[i];
         constexpr uint32_t kAhead = 12;  // prefetch distance
         if (i + kAhead < count) __builtin_prefetch(&pair + kAhead);
-        if (Stream::kWrites && pair.contact != PairStore::kNone) {
-            __builtin_prefetch(&contacts[pair.contact] + kAhead);
-            __builtin_prefetch(&records[pair.contact] + kAhead);
-        }
-        stream.Reserve(kMostOfPair);
         const PairPlace before = Stream::kWrites ? PairPlace{} : PlaceOf(pair);
-        bool isActive = active.Contains(i), hasContact = pair.contact != PairStore::kNone;
+        bool isActive = Stream::kWrites && store.active.Contains(i), hasContact = pair.contact != PairStore::kNone;
         uint32_t more = Stream::kWrites ? store.MoreOf(i) : PairStore::kNone;
         if (VisitPair(stream, pair, isActive, hasContact, more)) {
             auto& [next, previous] = link;
             if (!pair.isMore) stream(next, previous);
-            VisitLoad(stream, load);
+            stream(load);
+            attach.OfPair(i, before);
             if (hasContact) {
                 if constexpr (!Stream::kWrites) {
                     store.AddContact(i);
-                    contacts[pair.contact].more = more;
+                    store.contacts[pair.contact].more = more;
                 }
-                auto& contact = contacts[pair.contact];
-                auto& record = records[pair.contact];
+                auto& contact = store.contacts[pair.contact];
+                auto& record = store.records[pair.contact];
+                __builtin_prefetch(&contact + kAhead);
+                __builtin_prefetch(&record + kAhead);
                 VisitContact(stream, contact, pair.pointCount);
                 VisitRecord(stream, record, pair.pointCount);
-                if (keepsListenersData && record.Has(ContactRecord::kSurfaceVelocity))
-                    VisitSurfaceVelocity(stream, surfaceVelocities[pair.contact]);
-                if (keepsListenersData && record.Has(ContactRecord::kMassOverride))
-                    VisitMassOverride(stream, massOverrides[pair.contact]);
+                if (store.keepsListenersData_ && record.Has(ContactRecord::kSurfaceVelocity))
+                    VisitSurfaceVelocity(stream, store.surfaceVelocities[pair.contact]);
+                if (store.keepsListenersData_ && record.Has(ContactRecord::kMassOverride))
+                    VisitMassOverride(stream, store.massOverrides[pair.contact]);
+                attach.OfContact(pair, contact.color);
             }
-            if (keepsReported) VisitReported(stream, reported[i]);
-            if constexpr (!Stream::kWrites)
-                if (isActive) active.Insert(i);
+            if (store.keepsReported_) VisitReported(stream, store.reported[i]);
+            activeOfWord |= uint64_t{isActive} << i % 64;
+        } else {
+            attach.OfPair(i, before);
         }
-        attach(i, before);
-        EndElement(stream, i);
-    }
-    if constexpr (!Stream::kWrites) s = stream;
-    s.EndBlock();
+        if constexpr (!Stream::kWrites) {
+            if (i % 64 == 63 || i + 1 == count) SetWord(store.active, i / 64, std::exchange(activeOfWord, 0));
+        }
+    });
     s.Begin(SnapshotSection::PairLists);
     s.Reserve(64);
     s(size);
@@ -225,7 +223,7 @@ bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
         s.Reserve(kMostOfJoint);
         bool isBreakable = breakable.Contains(i);
         if (VisitJoint(s, joints[i], isBreakable)) {
-            VisitLoad(s, gaps[i]);
+            s(gaps[i]);
             VisitJointRecord(s, records[i]);
             if (!VisitType(s, *types[i])) return false;
             if constexpr (!Stream::kWrites)

@@ -20,10 +20,15 @@ template <>
 struct IsPlain<ColliderRun> : std::true_type {};
 template <>
 struct IsPlain<SolvedContact> : std::true_type {};
+template <>
+struct IsPlain<LoadLevel> : std::true_type {};
+template <>
+struct IsPlain<ContactRecord::Point> : std::true_type {};
 // 15 floats, two bytes and 16 bits: no padding.
 template <>
 struct IsPlain<BodyDynamics> : std::true_type {};
-static_assert(sizeof(BodyId) == 8 && sizeof(JointId) == 8 && sizeof(ColliderRun) == 12 && sizeof(SolvedContact) == 8);
+static_assert(sizeof(BodyId) == 8 && sizeof(JointId) == 8 && sizeof(ColliderRun) == 12 && sizeof(SolvedContact) == 8 &&
+              sizeof(LoadLevel) == 4 && sizeof(ContactRecord::Point) == 24);
 
 // Bit fields, which cannot be bound by reference.
 template <class Stream, class... Bits>
@@ -70,15 +75,9 @@ void VisitSystemSettings(Stream& s, Settings& settings) {
 }
 
 template <class Stream, class Override>
-void VisitMassOverride(Stream& s, Override& massOverride) {
+FULCRUM_INLINE_IN_LOOP void VisitMassOverride(Stream& s, Override& massOverride) {
     auto& [massA, inertiaA, massB, inertiaB] = massOverride;
     s(massA, inertiaA, massB, inertiaB);
-}
-
-template <class Stream, class Load>
-FULCRUM_INLINE_IN_LOOP void VisitLoad(Stream& s, Load& load) {
-    auto& [level, recent, steps, stiffness] = load;
-    s(level, recent, steps, stiffness);
 }
 
 template <class Stream, class Effort>
@@ -278,10 +277,7 @@ FULCRUM_INLINE_IN_LOOP void VisitRecord(Stream& s, Record& record, uint32_t poin
     s(friction, restitution, marks);
     if (points == 0) return;
     s(normal, pointCount, twistRadius, impulse, frictionImpulse, twistImpulse);
-    for (uint32_t i = 0; i < std::min<uint32_t>(points, ContactRecord::kMaxPoints); ++i) {
-        auto& [onA, onB] = all[i];
-        s(onA, onB);
-    }
+    for (uint32_t i = 0; i < std::min<uint32_t>(points, ContactRecord::kMaxPoints); ++i) s(all[i]);
 }
 
 template <class Stream, class Velocity>
@@ -362,7 +358,7 @@ void VisitEvent(Stream& s, Event& event) {
 
 // Except temporaries of one step.
 template <class Stream, class Contact>
-void VisitReported(Stream& s, Contact& contact) {
+FULCRUM_INLINE_IN_LOOP void VisitReported(Stream& s, Contact& contact) {
     auto& [bodyA, bodyB, childA, childB, isOn, kind, manifoldCount] = contact;
     if constexpr (!Stream::kWrites) contact = {};
     s(isOn);

@@ -75,6 +75,8 @@ template <class T, size_t kCount>
 struct IsPlain<std::array<T, kCount>> : IsPlain<T> {};
 static_assert(sizeof(Bounds) == 24 && sizeof(RelativePose) == 28 && sizeof(Position) == 24);
 
+#define FULCRUM_INLINE_IN_LOOP __attribute__((always_inline)) inline  // see VisitElements
+
 // A call with several values is faster than several calls: the write position stays in a register, which the compiler
 // cannot do across calls, since written bytes may alias it.
 class SnapshotWriter {
@@ -164,7 +166,7 @@ public:
     explicit SnapshotReader(std::span<const std::byte> data) : at_(data.data()), end_(data.data() + data.size()) {}
 
     template <class... T>
-    void operator()(T&... values) {
+    FULCRUM_INLINE_IN_LOOP void operator()(T&... values) {
         static_assert((IsPlain<T>::value && ...));
         if (!Has((sizeof(T) + ...))) [[unlikely]] {
             (std::memset(static_cast<void*>(&values), 0, sizeof values), ...);
@@ -195,16 +197,19 @@ public:
     void Reserve(size_t) {}
     void Begin(SnapshotSection) {}
     void EndBlock() {}
+    std::span<const std::byte> Left() const { return {at_, end_}; }
+    void SkipTo(const std::byte* at) { at_ = at; }
     bool HasFailed() const { return hasFailed_; }
     bool IsAtEnd() const { return at_ == end_; }
 
 private:
+    // Of more than 0 bytes; false once it has failed, since it is at the end then.
     bool Has(size_t size) {
-        if (size > static_cast<size_t>(end_ - at_)) [[unlikely]] {
-            hasFailed_ = true;
-            at_ = end_;
-        }
-        return !hasFailed_;
+        if (size <= static_cast<size_t>(end_ - at_)) [[likely]]
+            return true;
+        hasFailed_ = true;
+        at_ = end_;
+        return false;
     }
 
     const std::byte* at_;
@@ -212,17 +217,52 @@ private:
     bool hasFailed_ = false;
 };
 
-// The stream for the loop over a large array: the reader is copied, and assigned back afterwards. The copy stays in
-// registers if all functions that read it are inlined; bytes that are read may alias the original.
-template <class Stream>
-using InLoop = std::conditional_t<Stream::kWrites, Stream&, Stream>;
-#define FULCRUM_INLINE_IN_LOOP __attribute__((always_inline)) inline
+// Reads elements of which it is known that the data has them whole.
+class UncheckedSnapshotReader {
+public:
+    static constexpr bool kWrites = false;
+
+    explicit UncheckedSnapshotReader(std::span<const std::byte> data)
+        : at_(data.data()), end_(data.data() + data.size()) {}
+    bool HasLeft(size_t size) const { return size <= static_cast<size_t>(end_ - at_); }
+    const std::byte* At() const { return at_; }
+
+    template <class... T>
+    FULCRUM_INLINE_IN_LOOP void operator()(T&... values) {
+        static_assert((IsPlain<T>::value && ...));
+        FULCRUM_ASSERT(HasLeft((sizeof(T) + ...)));
+        ((std::memcpy(static_cast<void*>(&values), at_, sizeof values), at_ += sizeof values), ...);
+    }
+
+private:
+    const std::byte* at_;
+    const std::byte* end_;
+};
 
 // Array elements per block: unchanged blocks cost almost nothing in deltas.
 inline constexpr uint32_t kElementsPerBlock = 64;
 template <class Stream>
 void EndElement(Stream& stream, uint32_t index) {
     if (index % kElementsPerBlock == kElementsPerBlock - 1) stream.EndBlock();
+}
+
+// Calls visit(stream, i) for each element i of a large array, and ends their blocks. An element has `most` bytes at
+// most: while as many are left the reader need not check. That reader is a variable of its own, which stays in
+// registers if all functions that read it are inlined (FULCRUM_INLINE_IN_LOOP); bytes that are read may alias another.
+template <class Stream, class Visit>
+void VisitElements(Stream& stream, uint32_t count, size_t most, Visit&& visit) {
+    uint32_t i = 0;
+    if constexpr (!Stream::kWrites) {
+        UncheckedSnapshotReader reader(stream.Left());
+        for (; i < count && reader.HasLeft(most); ++i) visit(reader, i);
+        stream.SkipTo(reader.At());
+    }
+    for (; i < count; ++i) {
+        stream.Reserve(most);
+        visit(stream, i);
+        EndElement(stream, i);
+    }
+    stream.EndBlock();
 }
 
 }  // namespace fulcrum

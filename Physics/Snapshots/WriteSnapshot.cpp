@@ -105,6 +105,12 @@ void WriteJointTypes(SnapshotWriter& s, const JointStore& joints, Array<std::byt
     s.EndBlock();
 }
 
+// See SnapshotAccess::VisitPairs.
+struct NothingAttached {
+    void OfPair(uint32_t, const SnapshotAccess::PairPlace&) const {}
+    void OfContact(const Pair&, const ColorSlot&) const {}
+};
+
 // All sections that are part of the state.
 MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepState& step, SnapshotRoom& room,
                       bool keeps) {
@@ -115,7 +121,7 @@ MaybeError WriteState(SnapshotWriter& s, const WorldState& world, const StepStat
     WriteJointTypes(s, world.joints, room.settings);
     SnapshotAccess::VisitBodies(s, world.bodies);
     SnapshotAccess::VisitColliders(s, world.colliders);
-    SnapshotAccess::VisitPairs(s, world.pairs, [](uint32_t, const auto&) {});
+    SnapshotAccess::VisitPairs(s, world.pairs, NothingAttached());
     SnapshotAccess::VisitJoints(s, world.joints);
     SnapshotAccess::VisitSleeping(s, world.sleeping);
     room.changed = world.sensors.changed;

@@ -9,12 +9,6 @@ namespace fulcrum {
 
 namespace {
 
-void Forget(ContactRecord& record) {
-    for (float& impulse : record.impulse) impulse = 0;
-    for (float& impulse : record.frictionImpulse) impulse = 0;
-    record.twistImpulse = 0;
-}
-
 // World axes: the normal, and the offsets, m, of the current contact points on both surfaces from those when the
 // manifold was found.
 struct ContactAxes {
@@ -99,7 +93,7 @@ bool AskListener(const ContactListener& listener, const BodyStore& bodies, const
     pairs.massOverrides[contact] = change.massOverride;
     record.Set(ContactRecord::kSensed, change.isSensor && !change.ignore);
     const bool acts = !change.ignore && !change.isSensor;
-    if (!acts) Forget(record);
+    if (!acts) record.ForgetImpulses();
     return acts;
 }
 

@@ -80,11 +80,8 @@ void ForgetImpulses(const BodyStore& bodies, const ColliderStore& colliders, Pai
                     uint32_t body) {
     VisitPairsOf(bodies, colliders, pairs, {&body, 1}, [&](uint32_t first) {
         for (uint32_t pair = first; pair != PairStore::kNone; pair = pairs.MoreOf(pair)) {
-            if (pairs.pairs[pair].contact == PairStore::kNone) continue;
-            ContactRecord& record = pairs.RecordOf(pairs.pairs[pair]);
-            std::fill(std::begin(record.impulse), std::end(record.impulse), 0.0f);
-            std::fill(std::begin(record.frictionImpulse), std::end(record.frictionImpulse), 0.0f);
-            record.twistImpulse = 0;
+            Pair& its = pairs.pairs[pair];
+            if (its.contact != PairStore::kNone) pairs.RecordOf(its).ForgetImpulses();
         }
     });
     joints.VisitOf(body, [&](uint32_t joint) { joints.Forget(joint); });

@@ -62,11 +62,6 @@ void WriteTwistRadius(ContactRecord& record) {
     record.twistRadius = MeanDistance(x, y, count);
 }
 
-void ForgetFriction(ContactRecord& record) {
-    record.twistImpulse = 0;
-    for (float& f : record.frictionImpulse) f = 0;
-}
-
 bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 1) < 0.1f; }
 
 // Whether the contact normal changed direction. The impulses of the last step along the new normal would then no longer
@@ -158,7 +153,7 @@ bool WillCollideAgain(const CollideStores& stores, const Pair& pair, PairShapes 
 
 // Clears the manifold.
 void Forget(Pair& pair, ContactRecord& record) {
-    if (pair.pointCount == 0) ForgetFriction(record);
+    if (pair.pointCount == 0) record.ForgetFriction();
     record.pointCount = 0;
     pair.pointCount = 0;
 }
@@ -297,7 +292,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     std::fill(record.impulse + count, record.impulse + ContactRecord::kMaxPoints, 0.0f);
     record.pointCount = static_cast<float>(count);
     pair.pointCount = static_cast<uint8_t>(count);
-    if (oldCount == 0) ForgetFriction(record);
+    if (oldCount == 0) record.ForgetFriction();
     if (count > 0) WriteTwistRadius(record);
 }
 

@@ -9,9 +9,7 @@ namespace {
 // Contact points may disappear within a step, but the contact stays that of this step.
 void MarkApart(PairStore& pairs, const Pair& pair) {
     ContactRecord& record = pairs.RecordOf(pair);
-    for (float& impulse : record.impulse) impulse = 0;
-    for (float& impulse : record.frictionImpulse) impulse = 0;
-    record.twistImpulse = 0;
+    record.ForgetImpulses();
     record.Set(ContactRecord::kApart, true);
 }
 

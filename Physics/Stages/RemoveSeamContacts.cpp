@@ -89,9 +89,7 @@ private:
     void RemovePoints(uint32_t index) {
         ContactRecord& record = pairs_.RecordOf(pairs_.pairs[index]);
         record.pointCount = 0;
-        for (float& impulse : record.impulse) impulse = 0;
-        for (float& impulse : record.frictionImpulse) impulse = 0;
-        record.twistImpulse = 0;
+        record.ForgetImpulses();
         pairs_.pairs[index].onSeam = true;
         seams_.push_back(index);
     }

@@ -1,5 +1,10 @@
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
 
+#include <Fulcrum/Math/Wide.h>
+#include <Fulcrum/Version.h>
+
+#include <nlohmann/json.hpp>
+
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -41,5 +46,18 @@ std::string CommitText() {
 }
 
 int CoreCount() { return static_cast<int>(std::thread::hardware_concurrency()); }
+
+nlohmann::ordered_json FileHead(const char* program) {
+    using Json = nlohmann::ordered_json;
+    const std::string commit = CommitText();
+    return {{"schema", kFileSchema},
+            {"program", program},
+            {"version", FULCRUM_VERSION_STRING},
+            {"date", UtcNow()},
+            {"commit", commit.empty() ? Json() : Json(commit)},
+            {"machine", {{"cpu", CpuModel()}, {"cores", CoreCount()}}},
+            {"compiler", CompilerName()},
+            {"lanes", kLanes}};
+}
 
 }  // namespace fulcrum

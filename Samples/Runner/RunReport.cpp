@@ -265,25 +265,17 @@ nlohmann::ordered_json ReportJson(const std::string& name, const RunFigures& fig
 nlohmann::ordered_json RunDocument(const Scene& scene, const std::string& name, const RunFigures& figures,
                                    uint64_t seed) {
     using Json = nlohmann::ordered_json;
-    Json json{{"schema", kRunSchema},
-              {"program", "fulcrum-runner"},
-              {"version", FULCRUM_VERSION_STRING},
-              {"date", UtcNow()},
-              {"commit", CommitText().empty() ? Json() : Json(CommitText())},
-              {"machine", {{"cpu", CpuModel()}, {"cores", CoreCount()}}},
-              {"compiler", CompilerName()},
-              {"lanes", kLanes},
-              {"units",
-               {{"*_ms", "milliseconds of wall clock"},
-                {"*_ns", "nanoseconds of wall clock"},
-                {"*_m", "meters"},
-                {"*_m_s", "meters a second"},
-                {"*_j", "joules"},
-                {"*_s", "seconds"},
-                {"*_per_s", "a second of wall clock"},
-                {"*_bytes", "bytes"},
-                {"dt", "seconds"},
-                {"accuracy", "accuracy_unit"}}}};
+    Json json = FileHead("fulcrum-runner");
+    json["units"] = {{"*_ms", "milliseconds of wall clock"},
+                     {"*_ns", "nanoseconds of wall clock"},
+                     {"*_m", "meters"},
+                     {"*_m_s", "meters a second"},
+                     {"*_j", "joules"},
+                     {"*_s", "seconds"},
+                     {"*_per_s", "a second of wall clock"},
+                     {"*_bytes", "bytes"},
+                     {"dt", "seconds"},
+                     {"accuracy", "accuracy_unit"}};
     json.update(ReportJson(name, figures, seed));
     json["energy_at_start_j"] = figures.energyAtStart;
     json["energy_at_end_j"] = figures.energyAtEnd;

@@ -24,11 +24,9 @@ AccuracyVerdict VerdictOf(const Scene& scene, const RunFigures& figures);
 // "0.0069 m, pass: 0 to 0.02 m is asked for (largest distance ...)".
 std::string AccuracyText(const Scene& scene, const RunFigures& figures);
 
-// What a file of --json begins with: schema, program, version, date, commit, machine, compiler, lanes, units. All of
-// ReportJson follows, and the accuracy's meaning, unit, threshold and verdict.
+// A file of --json: FileHead, units, all of ReportJson, and the accuracy's meaning, unit, threshold and verdict.
 nlohmann::ordered_json RunDocument(const Scene& scene, const std::string& name, const RunFigures& figures,
                                    uint64_t seed);
-inline constexpr int kRunSchema = 2;  // 1 had no head
 
 // One run with the field names that benchmarks of other engines use: scene threads bodies contacts contact_points steps
 // median_ms mean_ms p99_ms max_ms steps_per_s accuracy nonfinite hash; and the engine's own. The ms of a scene that

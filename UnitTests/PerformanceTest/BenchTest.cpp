@@ -1,7 +1,9 @@
 // ./fulcrum bench as a whole: its command line, its exit status, a slower run found against its own baseline.
+#include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/PerformanceTest/Scenes/Bench.h>
 #include <Fulcrum/PerformanceTest/Scenes/SavedRuns.h>
 #include <Fulcrum/PerformanceTest/Scenes/TimedScene.h>
+#include <Fulcrum/Samples/Runner/RunEnvironment.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 
 #include <gtest/gtest.h>
@@ -122,7 +124,7 @@ TEST_F(Bench, FindsASlowerRunAgainstItsOwnBaseline) {
 TEST_F(Bench, BadInputHasStatus2AndSaysWhat) {
     EXPECT_EQ(Run({"--baseline", File("none.json")}), 2);
     EXPECT_TRUE(Says("there is no such file")) << errors_;
-    std::ofstream(File("damaged.json")) << "{\"schema\": 1, \"runs\": [";
+    std::ofstream(File("damaged.json")) << "{\"schema\": 2, \"runs\": [";
     EXPECT_EQ(Run({"--baseline", File("damaged.json")}), 2);
     EXPECT_TRUE(Says("is damaged")) << errors_;
     EXPECT_EQ(Run({"--history", File("damaged.json")}), 2);
@@ -143,7 +145,8 @@ TEST_F(Bench, WritesWhatItTimed) {
     ASSERT_EQ(Run({"pyramid", "--threads", "1,2", "--steps", "2", "--json", File("runs.json")}), 0) << errors_;
     std::ifstream stream(File("runs.json"));
     const nlohmann::json document = nlohmann::json::parse(stream);
-    EXPECT_EQ(document["schema"], kSavedRunsSchema);
+    EXPECT_EQ(document["schema"], kFileSchema);
+    EXPECT_EQ(document["lanes"], kLanes);
     EXPECT_TRUE(document["machine"]["cpu"].is_string());
     EXPECT_TRUE(document["units"].is_object());
     ASSERT_EQ(document["runs"].size(), 2u);

@@ -112,8 +112,8 @@ TEST_F(SavedRunsFile, MissingCutAndForeignOnesAreRefused) {
 TEST(SavedRuns, OtherSchemasAreNamed) {
     EXPECT_TRUE(Says(ErrorOf(Json::array({RunOf("pyramid", 1, 3)})), "no schema number"));
     Json document = DocumentOf({});
-    document["schema"] = 0;
-    EXPECT_TRUE(Says(ErrorOf(document), "has schema 0, this version reads 1"));
+    document["schema"] = 1;
+    EXPECT_TRUE(Says(ErrorOf(document), "has schema 1, this version reads 2"));
     document = DocumentOf({});
     document["kernel"] = 77;
     EXPECT_TRUE(Says(ErrorOf(document), "version 77 of the reference kernel"));

@@ -1,5 +1,7 @@
 // The measuring of a run: its statistics, its report, its recording.
+#include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/Samples/Runner/Recorder.h>
+#include <Fulcrum/Samples/Runner/RunEnvironment.h>
 #include <Fulcrum/Samples/Runner/RunReport.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 
@@ -146,7 +148,8 @@ TEST(RunDocument, SaysOfWhatItIs) {
     for (const char* field : {"schema", "program", "version", "date", "commit", "machine", "compiler", "lanes", "units",
                               "scene", "hash", "accuracy", "accuracy_unit", "accuracy_meaning", "accuracy_lowest"})
         EXPECT_TRUE(json.contains(field)) << field;
-    EXPECT_EQ(json["schema"], kRunSchema);
+    EXPECT_EQ(json["schema"], kFileSchema);
+    EXPECT_EQ(json["lanes"], kLanes);
     EXPECT_TRUE(json["accuracy"].is_null());
     EXPECT_TRUE(json["accuracy_passed"].is_null());
     EXPECT_EQ(json["machine"]["cores"].is_number(), true);

@@ -99,7 +99,7 @@ test('what the benchmark says of rest is taken over', () => {
 
 test('ratios to Bullet are taken from the runs where they are there', () => {
   const peer = { engine: 'bullet', version: '3.24', median_ms: 40.04, ratio: 0.251 };
-  writeFileSync(file('document.json'), JSON.stringify({ schema: 1, runs: [run('drum', 1, { peer }), run('drum', 2, { peer: { ...peer, ratio: 0.148 } })] }));
+  writeFileSync(file('document.json'), JSON.stringify({ schema: 2, runs: [run('drum', 1, { peer }), run('drum', 2, { peer: { ...peer, ratio: 0.148 } })] }));
   const { status, stderr } = figures(copy, '--take', file('document.json'));
   assert.equal(status, 0, stderr);
   assert.match(read('Docs/Performance.md'), /`drum` \|.*\| 10\.0 \| 10\.0 \| 0\.251 \| 0\.148 \|/);
