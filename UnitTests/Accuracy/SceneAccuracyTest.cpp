@@ -57,7 +57,7 @@ TEST(LabRegistry, HasEveryScene) {
                                             "bouncing_field",
                                             "resting_cube",
                                             "weight",
-                                            "bin",
+                                            "bins",
                                             "spring",
                                             "motor",
                                             "gear_pulley",
