@@ -83,7 +83,7 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     world_->coloring.Invalidate();
     if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
     if (settings.accuracy.jointError != target.jointError || settings.accuracy.drift != target.drift)
-        std::ranges::fill(world_->joints.gaps, LoadLevel{});
+        std::ranges::fill(world_->joints.gaps, GapLevel{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     KeepForEvents(*world_);
     if (!settings.events.bodies) step_->events.bodies = {};

@@ -33,18 +33,27 @@ Status ChooseScenes(const std::string& name, LabOptions& lab) {
 
 Result<LabCommand> ParseAdvise(std::vector<std::string> arguments) {
     LabCommand command;
-    command.lab.isQuick = command.lab.advises = command.lab.resumes = true;
+    command.lab.isQuick = command.lab.advises = true;
     std::string name;
     CLI::App app("Names the cheapest setting or target for your scene, or one of ours, from a short grid of runs",
                  "./fulcrum advise");
     app.add_option("SCENE", name, "your scene: FILE.json or FILE.cbor; or one of ./fulcrum accuracy or ./fulcrum list")
         ->required();
     AddText(app, "--error", "the largest error to accept, as a part or in per cent: 0.01 or 1%",
-            [&](const std::string& text) { command.adviseError = NumberWith(text, "%", 0.01, "--error"); });
+            [&](const std::string& text) { command.adviseError = NumberWith(text, "%", 0.01, "--error"); })
+        ->type_name("ERROR");
     AddText(app, "--budget", "the largest cost to accept, ms of work per frame of 1/60 s: 2 or 2ms",
-            [&](const std::string& text) { command.adviseBudget = NumberWith(text, "ms", 1, "--budget"); });
-    AddText(app, "--out", "folder whose runs are taken, and which gets those that are missing (default out/advice)",
-            [&](const std::string& text) { command.lab.folder = text; });
+            [&](const std::string& text) { command.adviseBudget = NumberWith(text, "ms", 1, "--budget"); })
+        ->type_name("TIME");
+    AddText(
+        app, "--out",
+        "folder of the runs (default out/advice, measured anew each time); one that you name is taken over as it is, "
+        "and only gets the runs that are missing: name another one after the engine has changed",
+        [&](const std::string& text) {
+            command.lab.folder = text;
+            command.lab.resumes = true;
+        })
+        ->type_name("DIR");
     command.lab.folder = "out/advice";
     Result<std::string> parsed = ParseCommandLine(app, std::move(arguments));
     if (!parsed) return parsed.GetError();
@@ -86,7 +95,7 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
         ->type_name("DIR");
     app.add_flag_function(
         "--resume", [&](int64_t) { command.lab.resumes = true; },
-        "take over the runs that DIR has, and make the others");
+        "take over the runs that DIR has, which must be of the same build, and make the others");
     AddText(app, "--table", "write the tables between the marks of this document, too", [&](const std::string& text) {
         command.table = text;
     })->type_name("FILE");

@@ -126,7 +126,7 @@ std::vector<Setting> TargetGrid(const Influences& influences) {
     for (const int rate : {30, 60}) {
         for (const int substeps : {1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 46, 64, 91, 128, 181})
             settings.push_back({rate, Effort(substeps, 1, 1, Family::Fixed), Family::Fixed});
-        for (const int substeps : {1, 2, 4})
+        for (const int substeps : {1, 2, 3, 4, 5})
             // A substep of the square root of the half: half of the target.
             for (const float target :
                  {0.4f, 0.2f, 0.1f, 0.05f, 0.025f, 0.012f, 0.006f, 0.003f, 0.0015f, 0.0008f, 0.0004f, 0.0002f, 0.0001f})

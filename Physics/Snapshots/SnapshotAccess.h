@@ -223,7 +223,7 @@ bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
         s.Reserve(kMostOfJoint);
         bool isBreakable = breakable.Contains(i);
         if (VisitJoint(s, joints[i], isBreakable)) {
-            s(gaps[i]);
+            VisitGap(s, gaps[i]);
             VisitJointRecord(s, records[i]);
             if (!VisitType(s, *types[i])) return false;
             if constexpr (!Stream::kWrites)

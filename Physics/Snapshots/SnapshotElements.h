@@ -80,6 +80,24 @@ FULCRUM_INLINE_IN_LOOP void VisitMassOverride(Stream& s, Override& massOverride)
     s(massA, inertiaA, massB, inertiaB);
 }
 
+// A trial is written only where there is one.
+template <class Stream, class Gap>
+void VisitGap(Stream& s, Gap& gap) {
+    constexpr uint8_t kHasTrial = 0x80;  // of the level, which is at most 31
+    auto& [load, trial] = gap;
+    LoadLevel stored = load;
+    if (trial.error > 0) stored.level |= kHasTrial;
+    s(stored);
+    const bool hasTrial = (stored.level & kHasTrial) != 0;
+    if constexpr (!Stream::kWrites) {
+        stored.level &= static_cast<uint8_t>(~kHasTrial);
+        gap = {.load = stored, .trial = {}};
+    }
+    if (!hasTrial) return;
+    auto& [error, effort, least, most, level, isInVain, steps] = trial;
+    s(error, effort, least, most, level, isInVain, steps);
+}
+
 template <class Stream, class Effort>
 void VisitEffort(Stream& s, Effort& effort) {
     auto& [substeps, velocityIterations, positionIterations] = effort;

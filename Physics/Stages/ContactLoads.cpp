@@ -34,6 +34,48 @@ uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, const Scale& sca
     return static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
 }
 
+// An effort is in vain if the error of a joint remains above this part of what it was, and of its maximum over two
+// times as many steps as a load must persist for, though substeps are half as long: by the square law it would be a
+// quarter. What lands, swings or rattles does not keep its error for so long.
+constexpr float kInVain = 0.9f, kShorter = 0.51f;
+constexpr uint32_t kWindows = 2;
+// Beyond these parts of the error for which effort was in vain it is tried again.
+constexpr float kLeastChange = 0.5f, kMostChange = 1.5f;
+
+// The level that a joint asks for. gapPart: its gap by GapScale::PerLevel; driftPart: what its drift asks for,
+// likewise.
+uint8_t NextLevel(GapLevel& gap, float gapPart, float driftPart, const GapScale& scale) {
+    auto& [load, trial] = gap;
+    const float error = gapPart * scale.impulseScale * scale.impulseScale;  // in quarters of the target
+    const uint32_t wantedByGap = LevelOf(gapPart), wantedByDrift = LevelOf(driftPart);
+    if (trial.isInVain) {
+        const bool isSame = error >= kLeastChange * trial.error && error <= kMostChange * trial.error;
+        trial.steps = isSame ? uint16_t(0) : static_cast<uint16_t>(trial.steps + 1);
+        const uint32_t most = trial.level;
+        if (trial.steps < scale.stepsOfLoad)
+            return NextLevel(load, std::max(std::min(wantedByGap, most), wantedByDrift), false, scale);
+        trial = {};
+    }
+    if (trial.error > 0) {
+        trial.least = std::min(trial.least, error);
+        trial.most = std::max(trial.most, error);
+        if (++trial.steps >= kWindows * scale.stepsOfLoad) {
+            const bool isConstant = trial.least >= kInVain * trial.most;
+            trial.steps = 0;
+            trial.least = trial.most = error;
+            if (error < kInVain * trial.error) trial = {};
+            else if (isConstant && scale.impulseScale <= kShorter * trial.effort) {
+                trial.isInVain = true;
+                return trial.level;
+            }
+        }
+    }
+    const uint8_t level = NextLevel(load, std::max(wantedByGap, wantedByDrift), false, scale);
+    if (trial.error == 0 && level > load.level && wantedByGap > load.level)
+        trial = {.error = error, .effort = scale.impulseScale, .least = error, .most = error, .level = load.level};
+    return level;
+}
+
 template <int N>
 Twist<Wide<N>> VelocitiesOf(const uint32_t (&bodies)[N], const BodyStore& store) {
     const float* rows[N];
@@ -65,27 +107,27 @@ Wide<N> SquaredPartings(const JointBatch<N>& batch, const BodyStore& bodies) {
 template <class Batch, class Real>
 bool NoteSquaredGaps(const Batch& batch, const Real& squared, const GapScale& scale, const BodyStore& bodies,
                      JointStore& joints) {
-    Real part = Sqrt(squared) * Real(scale.PerLevel(scale.target));
+    Real gapPart = Sqrt(squared) * Real(scale.PerLevel(scale.target)), driftPart(0.0f);
     if (joints.targetCount > 0)
         for (int lane = 0; lane < batch.count; ++lane) {
             const float target = joints.joints[batch.joint[lane]].errorTarget;
-            if (target > 0) part.Set(lane, std::sqrt(squared[lane]) * scale.PerLevel(target));
+            if (target > 0) gapPart.Set(lane, std::sqrt(squared[lane]) * scale.PerLevel(target));
         }
     // Effort makes gaps less by the square of what it makes speeds less.
     if (scale.drift < std::numeric_limits<float>::infinity()) {
         const Real ratio = Sqrt(SquaredPartings(batch, bodies)) * Real(1 / scale.drift);
-        part = Max(part, ratio * ratio * Real(1 / kUnnotedFraction));
+        driftPart = ratio * ratio * Real(1 / kUnnotedFraction);
     }
-    const uint32_t noted = scale.forgets ? ~0u : (part >= Real(1.0f)).ToBits();
+    const uint32_t noted = scale.forgets ? ~0u : (Max(gapPart, driftPart) >= Real(1.0f)).ToBits();
     if (noted == 0) return false;
     bool changed = false;
     for (int lane = 0; lane < batch.count; ++lane) {
         if (!(noted >> lane & 1u)) continue;
-        LoadLevel& gap = joints.gaps[batch.joint[lane]];
-        gap.stiffness = scale.stiffness;
-        const uint8_t level = NextLevel(gap, LevelOf(part[lane]), false, scale);
-        changed |= level != gap.level;
-        gap.level = level;
+        GapLevel& gap = joints.gaps[batch.joint[lane]];
+        gap.load.stiffness = scale.stiffness;
+        const uint8_t level = NextLevel(gap, gapPart[lane], driftPart[lane], scale);
+        changed |= level != gap.load.level;
+        gap.load.level = level;
     }
     return changed;
 }

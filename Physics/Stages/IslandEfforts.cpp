@@ -303,7 +303,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         if (!joint.effort.IsAny() && !adaptsToGaps) return;
         const uint32_t body = MovingBodyOf(entry), root = sets.Find(bodies.cold[body].awakePlace);
         if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
-        const LoadLevel& gap = joints.gaps[entry.constraint];
+        const LoadLevel& gap = joints.gaps[entry.constraint].load;
         if (!adaptsToGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
         const float need = ExcessOfLevel(gap.level);
         needs[root].Raise(need, body);

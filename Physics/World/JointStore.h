@@ -80,7 +80,7 @@ public:
     Array<JointRecord> records;
     Array<JointType*> types;
     Array<Joint> joints;
-    Array<LoadLevel> gaps;  // load levels of gaps between anchors
+    Array<GapLevel> gaps;  // of gaps between anchors
     IndexSet breakable;
     uint32_t targetCount = 0;  // joints with an errorTarget
 

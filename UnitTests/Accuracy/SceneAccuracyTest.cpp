@@ -57,6 +57,7 @@ TEST(LabRegistry, HasEveryScene) {
                                             "bouncing_field",
                                             "resting_cube",
                                             "weight",
+                                            "bins",
                                             "spring",
                                             "motor",
                                             "gear_pulley",

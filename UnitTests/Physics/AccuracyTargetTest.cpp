@@ -1,5 +1,5 @@
-// AccuracyTarget: targets of single bodies and joints, drift, and what accuracy for one structure costs among many
-// bodies that need none.
+// AccuracyTarget: targets of single bodies and joints, drift, joints that disagree, and what accuracy for one structure
+// costs among many bodies that need none.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
 #include <algorithm>
@@ -234,6 +234,97 @@ TEST(AccuracyTarget, EffortsForDriftDoNotComeAndGo) {
             world.Step();
             ASSERT_EQ(world.Report().mostEffort[0].substeps, substeps) << drift << " step " << step;
         }
+    }
+}
+
+// ---- Joints that disagree
+
+// Two joints that want a box half a meter apart. Returns them; the box hangs at (1, 2, 0).
+std::vector<JointId> AddDispute(TestWorld& world) {
+    const BodyId hook = AddHook(world, {0, 2, 0}), box = world.Add({.shape = CubeOf(0.5f), .position = {1, 2, 0}});
+    std::vector<JointId> joints;
+    for (const double x : {1.0, 1.5}) {
+        FixedJointSettings joint = Of<FixedJointSettings>(Between(hook, box, {x, 2, 0}));
+        joint.anchorB = JointAnchor{.point = {1, 2, 0}};
+        joints.push_back(Join(world, joint));
+    }
+    return joints;
+}
+
+int GreatestSubsteps(TestWorld& world) {
+    int substeps = world.System().Settings().solver.substeps;
+    for (const IslandEffortReport& effort : EffortsOf(world)) substeps = std::max(substeps, effort.substeps);
+    return substeps;
+}
+
+// No effort closes the gap of one: that is tried, then it gets no more than it had before, and it stays so. The other
+// one gets the little that it needs.
+TEST(AccuracyTarget, JointsThatDisagreeGetNoEffortInVain) {
+    for (const float target : {0.2f, 0.01f, 0.0001f}) {
+        SystemSettings settings = WithoutTargets();
+        settings.solver.substeps = 1;
+        settings.accuracy.jointError = target;
+        TestWorld world(settings);
+        const std::vector<JointId> joints = AddDispute(world);
+        int most = 1;
+        for (int step = 0; step < 300; ++step) {
+            world.Step();
+            most = std::max(most, GreatestSubsteps(world));
+        }
+        EXPECT_GT(most, 1) << target << ": nothing was tried";
+        EXPECT_LT(LargestGap(world, {joints[0]}), target);
+        EXPECT_NEAR(LargestGap(world, {joints[1]}), 0.5, 0.01);
+        const int substeps = GreatestSubsteps(world);
+        EXPECT_LE(substeps, target < 0.001f ? 8 : 1) << target;
+        for (int step = 0; step < 600; ++step) {
+            world.Step();
+            ASSERT_EQ(GreatestSubsteps(world), substeps) << target << " step " << step;
+        }
+    }
+}
+
+// When the other one is taken away, and the one whose effort was in vain is loaded, effort helps it and it gets that.
+TEST(AccuracyTarget, AJointThatIsNoLongerContradictedGetsItsEffort) {
+    SystemSettings settings = WithoutTargets();
+    settings.solver.substeps = 1;
+    settings.accuracy.jointError = 0.002f;
+    settings.exactJointLoad = kInfinity;
+    TestWorld world(settings);
+    const std::vector<JointId> joints = AddDispute(world);
+    world.Run(5);
+    const int before = GreatestSubsteps(world);
+    ASSERT_LT(before, 4);
+    ASSERT_TRUE(JointsOf(world).Remove(joints[0]));
+    world.Run(2);
+    world.Add({.shape = CubeOf(0.5f), .position = {1.5, 3.001, 0}, .mass = 40'000});
+    world.Run(4);
+    EXPECT_GT(GreatestSubsteps(world), before);
+    EXPECT_LT(LargestGap(world, {joints[1]}), 0.002);
+}
+
+// What has been tried is state: a world that goes on from a snapshot tries nothing again, and does the same.
+TEST(AccuracyTarget, SnapshotsKnowWhatWasTried) {
+    SystemSettings settings = WithoutTargets();
+    settings.solver.substeps = 1;
+    settings.accuracy.jointError = 0.1f;
+    for (const int steps : {4, 12, 20, 60}) {
+        TestWorld world(settings);
+        AddDispute(world);
+        world.Steps(steps);
+        std::vector<std::byte> bytes;
+        ASSERT_TRUE(world.System().SaveSnapshot(bytes));
+        std::vector<int> substeps;
+        for (int step = 0; step < 60; ++step) {
+            world.Step();
+            substeps.push_back(GreatestSubsteps(world));
+        }
+        const uint64_t hash = world.System().HashState();
+        ASSERT_TRUE(world.System().RestoreSnapshot(bytes));
+        for (int step = 0; step < 60; ++step) {
+            world.Step();
+            ASSERT_EQ(GreatestSubsteps(world), substeps[static_cast<size_t>(step)]) << steps << ", " << step;
+        }
+        EXPECT_EQ(world.System().HashState(), hash) << steps;
     }
 }
 

@@ -11,7 +11,7 @@ std::vector<LabScene> FreeMotionScenes();  // projectile, free_rotation, fast_sp
 std::vector<LabScene> PendulumScenes();    // pendulum, point_pendulum
 std::vector<LabScene> SlidingScenes();     // incline, friction_isotropy, slide_to_roll, rolling
 std::vector<LabScene> BouncingScenes();    // restitution, bouncing_field
-std::vector<LabScene> RestingScenes();     // resting_cube, weight
+std::vector<LabScene> RestingScenes();     // resting_cube, weight, bins
 std::vector<LabScene> DriveScenes();       // spring, motor, gear_pulley, momentum
 std::vector<LabScene> LoadScenes();        // heavy_on_light, tall_stack, tiny, huge
 std::vector<LabScene> ChainScenes();       // heavy_chain, long_chain

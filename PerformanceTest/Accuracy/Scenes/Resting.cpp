@@ -1,8 +1,9 @@
-// Resting bodies: penetration and contact forces.
+// Resting bodies: penetration, contact forces, and what still moves.
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Scenes/Families.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum::accuracy {
 namespace {
@@ -91,6 +92,94 @@ void Weight(LabRun& run) {
     run.Error("floor_force", Relative(force[0], kBalls * kMass * kGravity));
 }
 
+// In the order x, y, z, whatever the order in which a compiler evaluates arguments.
+Position RandomPoint(Random& random, const Position& low, const Position& high) {
+    Position point;
+    for (int axis = 0; axis < 3; ++axis) point[axis] = random.Between(low[axis], high[axis]);
+    return point;
+}
+
+// A box, a plate or a convex hull of 40 cm or so, by turns.
+ShapePtr MakePiece(int i, Random& random) {
+    if (i % 3 < 2) {
+        const bool isPlate = i % 3 == 1;
+        const Position half = isPlate ? RandomPoint(random, {0.2, 0.025, 0.15}, {0.3, 0.025, 0.25})
+                                      : RandomPoint(random, {0.1, 0.1, 0.1}, {0.2, 0.2, 0.2});
+        return BoxOf(half.x(), half.y(), half.z());
+    }
+    std::vector<Vector3> points;
+    for (int corner = 0; corner < 12; ++corner) {
+        Position point = RandomPoint(random, {-1, -1, -1}, {1, 1, 1});
+        point *= random.Between(0.15, 0.25) / std::max(0.1, point.norm());
+        points.push_back(point.cast<float>());
+    }
+    return ConvexHull::Create(points).Value();
+}
+
+struct Motion {
+    double drift = 0, speed = 0;  // m, m/s
+};
+
+// 40 pieces fall into a bin of 2 x 2 x 8 m, of five boxes, and may not sleep: how far and how fast those that move most
+// still go in the last second.
+Motion FillBin(LabRun& run) {
+    constexpr int kPieces = 40;
+    constexpr double kHalf = 1, kHeight = 4, kWall = 0.25;
+    LabWorld world(run);
+    world.Add({.shape = BoxOf(kHalf, kWall, kHalf), .motion = MotionType::Static, .position = {0, -kWall, 0}});
+    for (const double side : {-1.0, 1.0})
+        for (const bool isAlongX : {true, false}) {
+            const double out = side * (kHalf + kWall), along = kHalf + 2 * kWall;
+            world.Add({.shape = isAlongX ? BoxOf(along, kHeight, kWall) : BoxOf(kWall, kHeight, kHalf),
+                       .motion = MotionType::Static,
+                       .position = {isAlongX ? 0 : out, kHeight, isAlongX ? out : 0}});
+        }
+    std::vector<BodyId> pieces;
+    for (int i = 0; i < kPieces; ++i) {
+        const int column = i % 4;
+        const ShapePtr shape = MakePiece(i, run.random);
+        const Vector3 axis = RandomPoint(run.random, {-1, 1, -1}, {1, 1, 1}).cast<float>();
+        pieces.push_back(world.Add({.shape = shape,
+                                    .position = {column % 2 - 0.5, 0.5 + 0.65 * (i / 4), column / 2 - 0.5},
+                                    .rotation = RotationAbout(Normalized(axis), run.random.Between(0, 2 * kPi))}));
+    }
+    world.Steps(14);
+    std::vector<Position> starts;
+    for (const BodyId id : pieces) starts.push_back(world.At(id));
+    Motion most;
+    for (int i = run.Steps(1); i > 0; --i) {
+        world.Step();
+        most.speed = std::max(most.speed, world.FastestBody());
+    }
+    int inside = 0;
+    for (size_t i = 0; i < pieces.size(); ++i) {
+        const Position at = world.At(pieces[i]);
+        most.drift = std::max(most.drift, (at - starts[i]).norm());
+        // A hull's position need not be inside of it.
+        inside += std::abs(at.x()) < kHalf + kWall && std::abs(at.z()) < kHalf + kWall && at.y() > -kWall;
+    }
+    run.Require(inside == kPieces, "all are in the bin");
+    return most;
+}
+
+// Most bins come to rest, some do not: the errors are of the worst one, and the share of those that move.
+void Bins(LabRun& run) {
+    constexpr double kSize = 0.4, kFast = 0.003;  // m, m/s
+    const int count = run.Count(32, 6);
+    Motion most;
+    int restless = 0;
+    for (int bin = 0; bin < count; ++bin) {
+        const Motion motion = FillBin(run);
+        most.drift = std::max(most.drift, motion.drift);
+        most.speed = std::max(most.speed, motion.speed);
+        restless += motion.speed > kFast;
+    }
+    run.Error("drift", most.drift / kSize);
+    run.Error("speed", most.speed / kSize);
+    run.Error("restless", static_cast<double>(restless) / count);
+    run.Observe(most.drift / kSize);
+}
+
 }  // namespace
 
 std::vector<LabScene> RestingScenes() {
@@ -110,6 +199,13 @@ std::vector<LabScene> RestingScenes() {
          .influences = {.contacts = true},
          .testBound = 0.05,
          .run = Weight},
+        {.name = "bins",
+         .what = "32 bins (short: 6), each with 40 boxes, plates and convex hulls of 40 cm, after 15 s without sleep",
+         .error = "way of the body that goes farthest in the last second, over 40 cm",
+         .influences = {.contacts = true},
+         .isSlow = true,
+         .testBound = 0.05,
+         .run = Bins},
     };
 }
 
