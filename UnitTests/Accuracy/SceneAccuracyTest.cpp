@@ -45,42 +45,15 @@ TEST(LabRegistry, HasEveryScene) {
         EXPECT_GT(scene.testBound, 0) << scene.FullName();
         EXPECT_NE(scene.run, nullptr);
     }
-    EXPECT_EQ(names, (std::set<std::string>{"projectile",
-                                            "free_rotation",
-                                            "pendulum",
-                                            "point_pendulum",
-                                            "incline",
-                                            "friction_isotropy",
-                                            "slide_to_roll",
-                                            "rolling",
-                                            "restitution",
-                                            "bouncing_field",
-                                            "resting_cube",
-                                            "weight",
-                                            "bins",
-                                            "spring",
-                                            "motor",
-                                            "gear_pulley",
-                                            "momentum",
-                                            "heavy_on_light",
-                                            "heavy_chain",
-                                            "long_chain",
-                                            "tall_stack",
-                                            "tiny",
-                                            "huge",
-                                            "bullet",
-                                            "fast_spin",
-                                            "far_away",
-                                            "time_step",
-                                            "overlap",
-                                            "coincident",
-                                            "degenerate",
-                                            "internal_edges",
-                                            "thin",
-                                            "contradictory",
-                                            "singular",
-                                            "bad_input",
-                                            "soak"}));
+    EXPECT_EQ(
+        names,
+        (std::set<std::string>{
+            "projectile",     "free_rotation", "pendulum",      "point_pendulum", "incline",      "friction_isotropy",
+            "slide_to_roll",  "rolling",       "restitution",   "bouncing_field", "resting_cube", "weight",
+            "bins",           "spring",        "motor",         "gear_pulley",    "momentum",     "heavy_on_light",
+            "heavy_chain",    "long_chain",    "tall_stack",    "tiny",           "huge",         "bullet",
+            "fast_spin",      "far_away",      "time_step",     "overlap",        "coincident",   "degenerate",
+            "internal_edges", "thin",          "contradictory", "singular",       "bad_input",    "soak"}));
 }
 
 TEST(LabRegistry, FindsScenesByTheirNameAndByTheirFullName) {
