@@ -153,10 +153,10 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
         JointRow motion;
         pose.SetAbout(motion, axis);
         turns_.Advance(AngleAbout(pose, freeAxis_), pose.TurnedAbout(axis));
-        AxisControl control = axes_[freeAxis_];
-        if (RangeOf(control).IsFree() || IsTilted(pose, freeAxis_)) control.limited = false;
-        return AddControlRows(control, pose, motion, turns_.Angle(), kAngularSlackSpeed,
-                              firstSlot + freeAxis_ * ControlSlots::kCount, rows);
+        const AxisControl& control = axes_[freeAxis_];
+        const bool isFree = RangeOf(control).IsFree() || IsTilted(pose, freeAxis_);
+        return AddControlRows(isFree ? WithoutLimits(control) : control, pose, motion, turns_.Angle(),
+                              kAngularSlackSpeed, firstSlot + freeAxis_ * ControlSlots::kCount, rows);
     }
     const SwingTwistLimits limits = Limits();
     const Motion motion = MotionOf(pose, limits);

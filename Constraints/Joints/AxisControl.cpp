@@ -102,6 +102,13 @@ uint32_t MaxControlRows(const AxisControl& control) {
            (control.friction > 0.0f ? 1u : 0u);
 }
 
+AxisControl WithoutLimits(const AxisControl& control) {
+    if (LimitsLock(control)) return {};
+    AxisControl free = control;
+    free.limited = false;
+    return free;
+}
+
 void AddControlRows(const AxisControl& control, const JointPose& pose, const JointRow& motion, double position,
                     float slackSpeed, uint32_t firstSlot, JointRowList& rows) {
     const JointLimits& limits = control.limits;

@@ -71,6 +71,9 @@ struct ControlSlots {
 // The largest number of rows that AddControlRows adds.
 uint32_t MaxControlRows(const AxisControl& control);
 
+// The control while its limits do not apply. If they lock the axis there are no other rows, and none are left.
+AxisControl WithoutLimits(const AxisControl& control);
+
 // Margin added to the speed of an axis (current, or of its motor) when deciding which limits may be reached within the
 // step, since other accelerations are not known then. Covers 120 m/s2 and 240 rad/s2 at 60 Hz; beyond that a limit acts
 // one step late.

@@ -1,6 +1,7 @@
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 #include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fulcrum {
@@ -170,6 +171,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         pose.anchorA = Position(a.position[0], a.position[1], a.position[2]) + pose.armA.cast<double>();
         types[batch.joint[lane]]->CollectRows(pose, lists[lane]);
         FULCRUM_ASSERT(lists[lane].count <= batch.rowRoom);
+        lists[lane].count = std::min(lists[lane].count, batch.rowRoom);  // of a type that adds more than its MaxRows
         if (lists[lane].count > batch.rowCount) batch.rowCount = lists[lane].count;
     }
     if (batch.rowCount == 0) return;

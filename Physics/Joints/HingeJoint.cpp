@@ -16,9 +16,8 @@ void HingeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     JointRow motion;
     pose.SetAbout(motion, axis);
     turns_.Advance(AngleAbout(pose, 0), pose.TurnedAbout(axis));
-    AxisControl control = control_;
-    if (IsTilted(pose, 0)) control.limited = false;
-    AddControlRows(control, pose, motion, turns_.Angle(), kAngularSlackSpeed, 0, rows);
+    AddControlRows(IsTilted(pose, 0) ? WithoutLimits(control_) : control_, pose, motion, turns_.Angle(),
+                   kAngularSlackSpeed, 0, rows);
 }
 
 double HingeJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
