@@ -75,6 +75,7 @@ struct ContactBatch {
     // axes. locks: bits 0..2, x, y and z of A; bits 3..5, those of B.
     bool isGuided = false;
     uint8_t locks[N];
+    uint8_t locksOfAll, locksOfSome;  // of all lanes, and of any
 
     Vec3<Real> normal, tangent1, tangent2;
     Vec3<Real> armA;

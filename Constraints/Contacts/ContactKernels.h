@@ -80,9 +80,15 @@ WideMask<N> LockedLanes(const uint8_t (&locks)[N], int bit) {
     return is > Wide<N>(0.0f);
 }
 // The components of a vector along the free translations of body A (side 0) or B (side 1).
-template <int N>
-[[gnu::noinline, gnu::cold]] Vec3<Wide<N>> AlongFreeAxes(const uint8_t (&locks)[N], int side, Vec3<Wide<N>> v) {
-    for (int k = 0; k < 3; ++k) v[k] = Select(LockedLanes<N>(locks, 3 * side + k), Wide<N>(0.0f), v[k]);
+template <int N, bool kFixedB>
+[[gnu::noinline]] Vec3<Wide<N>> AlongFreeAxes(const ContactBatch<N, kFixedB>& batch, int side, Vec3<Wide<N>> v) {
+    const Wide<N> zero(0.0f);
+    for (int k = 0; k < 3; ++k) {
+        const int bit = 3 * side + k;
+        if (!(batch.locksOfSome >> bit & 1)) continue;
+        // Most often all bodies have the same locks.
+        v[k] = batch.locksOfAll >> bit & 1 ? zero : Select(LockedLanes<N>(batch.locks, bit), zero, v[k]);
+    }
     return v;
 }
 
@@ -132,12 +138,12 @@ FULCRUM_FORCE_INLINE void ApplyToBoth(const ContactBatch<N, kFixedB>& batch, Twi
     using Real = Wide<N>;
     Vec3<Real> alongA = force;
     if (batch.isGuided) [[unlikely]]
-        alongA = AlongFreeAxes<N>(batch.locks, 0, force);
+        alongA = AlongFreeAxes(batch, 0, force);
     ApplyWrench<Real>(twists.a, batch.inverseA, batch.armA, alongA, force, torque, Real(-1.0f));
     if constexpr (!kFixedB) {
         Vec3<Real> alongB = force;
         if (batch.isGuided) [[unlikely]]
-            alongB = AlongFreeAxes<N>(batch.locks, 1, force);
+            alongB = AlongFreeAxes(batch, 1, force);
         ApplyWrench<Real>(twists.b, batch.sideB.inverse, batch.sideB.arm, alongB, force, torque, Real(1.0f));
     }
 }

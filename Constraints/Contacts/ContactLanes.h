@@ -48,7 +48,7 @@ void ReadLane(ContactBatch<N, kFixedB>& batch, int lane, ContactBatch<1, kFixedB
     single.hasSurface = batch.hasSurface;
     single.gentle = batch.gentle >> lane & 1;
     single.isGuided = batch.isGuided;
-    single.locks[0] = batch.locks[lane];
+    single.locks[0] = single.locksOfAll = single.locksOfSome = batch.locks[lane];
     single.inverseSoftDepth = batch.inverseSoftDepth[lane];
 }
 

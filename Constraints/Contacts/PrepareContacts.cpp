@@ -66,6 +66,8 @@ template <int N, bool kFixedB>
         const int a = static_cast<int>(flagsA[i]) / BodyMass::kLockedX,
                   b = static_cast<int>(flagsB[i]) / BodyMass::kLockedX;
         batch.locks[i] = static_cast<uint8_t>(a | b << 3);
+        batch.locksOfAll = i == 0 ? batch.locks[i] : batch.locksOfAll & batch.locks[i];
+        batch.locksOfSome = i == 0 ? batch.locks[i] : batch.locksOfSome | batch.locks[i];
     }
 }
 
