@@ -126,6 +126,29 @@ TEST(LockedAxes, AHeavyBoxRestsOnALightShelf) {
             }
 }
 
+// It stops after v^2 / (2 mu g), whatever the masses.
+TEST(LockedAxes, ABoxThatSlidesOnALightShelfStops) {
+    for (const LockedAxes locks : {kNoTranslation | LockedAxes::Rotation, kOnRailAlongX})
+        for (const float mass : {1.0f, 10.0f, 1000.0f, 1e5f}) {
+            TestWorld world(NoSleep());
+            const Material material{.friction = 0.5f};
+            world.Add({.shape = BoxOf(4, 0.1f, 4),
+                       .position = {0, 0, 0},
+                       .mass = 10.0f,
+                       .material = material,
+                       .lockedAxes = locks});
+            const BodyId box = world.Add({.shape = BoxOf(0.5f, 0.2f, 0.5f),
+                                          .position = {0, 0.3, 0},
+                                          .linearVelocity = {0, 0, 1},
+                                          .mass = mass,
+                                          .material = material});
+            world.Run(2);
+            EXPECT_NEAR(world.PositionOf(box).z(), 1 / (2 * 0.5 * kGravity), 0.004) << mass << " kg";
+            EXPECT_NEAR(world.PositionOf(box).y(), 0.3, 0.001) << mass << " kg";
+            EXPECT_LT(Length(world.Bodies().GetLinearVelocity(box)), 1e-5f) << mass << " kg";
+        }
+}
+
 // A ball of m kg swings from a cart of M kg, on a rail or held in place. On the rail both swing about their common
 // center of mass along x.
 TEST(LockedAxes, APendulumSwingsFromALightCart) {
