@@ -131,7 +131,7 @@ GuidedMobility<Wide<N>> GuidedMobilityOf(const ContactBatch<N, kFixedB>& batch, 
             own += Select(LockedLanes<N>(batch.locks, 3 * side + k), Real(0.0f),
                           Real(inverse.mass * direction[k] * direction[k]));
         mobility.all += own;
-        mobility.share += own * own * InverseOrZero(Real(inverse.mass + angular));
+        mobility.share += own * (own * InverseOrZero(Real(inverse.mass + angular)));  // the square may underflow
     };
     add(0, batch.inverseA, batch.armA);
     if constexpr (!kFixedB) add(1, batch.sideB.inverse, batch.sideB.arm);

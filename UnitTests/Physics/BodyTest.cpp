@@ -126,6 +126,26 @@ TEST(LockedAxes, AHeavyBoxRestsOnALightShelf) {
             }
 }
 
+// That it can move along y alone leaves it half of its mobility along the slope's normal.
+TEST(LockedAxes, ABoxOnAVerticalRailStaysOnASlope) {
+    for (const float mass : {1e-6f, 1.0f, 1e25f}) {
+        TestWorld world(NoSleep());
+        const Quaternion tilt = RotationAbout(Vector3::UnitZ(), 0.25 * kPi);
+        world.Add({.shape = BoxOf(4, 1, 4), .motion = MotionType::Static, .rotation = tilt});
+        const double height = (1 + 0.5) * std::sqrt(2.0);
+        const BodyId box =
+            world.Add({.shape = CubeOf(0.5f),
+                       .position = {0, height + 0.1, 0},
+                       .rotation = tilt,
+                       .mass = mass,
+                       .lockedAxes = LockedAxes::TranslationX | LockedAxes::TranslationZ | LockedAxes::Rotation});
+        world.Run(3);
+        EXPECT_NEAR(world.PositionOf(box).y(), height, 0.001) << mass << " kg";
+        EXPECT_EQ(world.PositionOf(box).x(), 0) << mass << " kg";
+        EXPECT_LT(Length(world.Bodies().GetLinearVelocity(box)), 1e-5f) << mass << " kg";
+    }
+}
+
 // It stops after v^2 / (2 mu g), whatever the masses.
 TEST(LockedAxes, ABoxThatSlidesOnALightShelfStops) {
     for (const LockedAxes locks : {kNoTranslation | LockedAxes::Rotation, kOnRailAlongX})
