@@ -12,11 +12,13 @@ namespace fulcrum {
 
 namespace {
 
-WorldShapeHit ToWorld(const ColliderSearch& search, uint32_t collider, const ShapeHit& hit) {
+// bounds: those of the moving shape. No hit is earlier than where it enters the collider's bounds: with shapes of a
+// million meters a cast is wrong by decimeters, and would depend on which colliders the tree skips.
+WorldShapeHit ToWorld(const ColliderSearch& search, uint32_t collider, const TreeRay& bounds, const ShapeHit& hit) {
     WorldShapeHit result;
     result.body = search.IdOf(collider);
     result.subShape = {search.ChildOf(collider), hit.subShape.triangle};
-    result.fraction = hit.fraction;
+    result.fraction = std::max(hit.fraction, std::min(bounds.EntryInto(search.BoundsOf(collider)), 1.0f));
     result.normal = hit.normal;
     result.position = hit.position;
     result.depth = hit.depth;
@@ -136,15 +138,16 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
     if (!caster.IsValid() || !settings.IsValid()) return;
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
-    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction,
-             [&](uint32_t collider) {
-                 if (upTo.maxFraction < 0) return;
-                 caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const ShapeHit& found) {
-                     if (found.fraction > upTo.maxFraction) return true;
-                     upTo.maxFraction = std::min(upTo.maxFraction, visit(ToWorld(search, collider, found)));
-                     return upTo.maxFraction >= 0;
-                 });
-             });
+    const TreeRay bounds = SweptBounds(world_, caster, motion.pose, shape.displacement, settings);
+    AlongRay(search, bounds, upTo.maxFraction, [&](uint32_t collider) {
+        if (upTo.maxFraction < 0) return;
+        caster.CastAll(search.ShapeOf(collider), search.PoseOf(collider), upTo, [&](const ShapeHit& found) {
+            const WorldShapeHit here = ToWorld(search, collider, bounds, found);
+            if (here.fraction > upTo.maxFraction) return true;
+            upTo.maxFraction = std::min(upTo.maxFraction, visit(here));
+            return upTo.maxFraction >= 0;
+        });
+    });
 }
 
 bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, const ShapeCastSettings& settings,
@@ -157,16 +160,16 @@ bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, con
     const ColliderSearch search(world_, filter);
     ShapeCastSettings upTo = settings;
     bool any = false;
-    AlongRay(search, SweptBounds(world_, caster, motion.pose, shape.displacement, settings), upTo.maxFraction,
-             [&](uint32_t collider) {
-                 ShapeHit found;
-                 if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
-                 const WorldShapeHit here = ToWorld(search, collider, found);
-                 if (any && !ComesFirst(here, hit)) return;
-                 any = true;
-                 hit = here;
-                 upTo.maxFraction = here.fraction;
-             });
+    const TreeRay bounds = SweptBounds(world_, caster, motion.pose, shape.displacement, settings);
+    AlongRay(search, bounds, upTo.maxFraction, [&](uint32_t collider) {
+        ShapeHit found;
+        if (!caster.CastClosest(search.ShapeOf(collider), search.PoseOf(collider), upTo, found)) return;
+        const WorldShapeHit here = ToWorld(search, collider, bounds, found);
+        if (here.fraction > upTo.maxFraction || (any && !ComesFirst(here, hit))) return;
+        any = true;
+        hit = here;
+        upTo.maxFraction = here.fraction;
+    });
     return any;
 }
 

@@ -24,6 +24,17 @@ public:
         }
     }
 
+    // The fraction of the displacement, 0 or more, at which it enters a box that it hits.
+    float EntryInto(const Bounds& box) const {
+        float enter = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const float lower = (box.lower[axis] - toLower[axis]) * inverse[axis],
+                        upper = (box.upper[axis] - toUpper[axis]) * inverse[axis];
+            enter = std::max(enter, std::min(lower, upper));
+        }
+        return enter;
+    }
+
 private:
     friend class BoundsTree;
     friend class TreeRays;

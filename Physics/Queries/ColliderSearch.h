@@ -53,6 +53,12 @@ public:
         const Pose body = world_.seenPoses.ExactPoseOf(world_.lock, world_.bodies, BodyOf(collider));
         return piece.offset ? body * LocalOf(world_.bodies, world_.colliders, collider) : body;
     }
+    // Those by which its tree finds it, relative to Origin().
+    Bounds BoundsOf(uint32_t collider) const {
+        const ColliderStore& store = world_.colliders;
+        if (world_.outsideFatBounds.Contains(collider)) return world_.outsideFatBounds.Tree().GetBounds(collider);
+        return store.TreeOf(store.colliders[collider]).GetBounds(collider);
+    }
     // Tie-breaking order: by body, then child.
     bool ComesBefore(uint32_t a, uint32_t b) const {
         const uint32_t bodyA = BodyOf(a), bodyB = BodyOf(b);

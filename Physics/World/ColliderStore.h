@@ -51,6 +51,9 @@ public:
     bool movedHasEmpty = false;                   // some of them have been removed
     Array<ColliderRun> runs;                      // further runs of bodies
 
+    const BoundsTree& TreeOf(const Collider& c) const {
+        return c.sensor ? sensorTree : c.moving ? movingTree : staticTree;
+    }
     BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : staticTree; }
     void Reserve(size_t more);          // for so many more colliders
     uint32_t Allocate(uint32_t count);  // index of the first of `count` consecutive ones
