@@ -38,13 +38,19 @@ FULCRUM_FORCE_INLINE bool AnyLocked(const Wide<N>& flags) {
     return HorizontalMax(flags) >= float{BodyMass::kLockedX};
 }
 
+// The mask of lanes for which is(lane).
+template <int N, class Is>
+WideMask<N> LanesWhere(const Is& is) {
+    Wide<N> lanes(0.0f);
+    for (int i = 0; i < N; ++i)
+        if (is(i)) lanes.Set(i, 1.0f);
+    return lanes > Wide<N>(0.0f);
+}
+
 // The mask of lanes with the flag.
 template <int N>
 [[gnu::noinline, gnu::cold]] WideMask<N> LanesWith(const Wide<N>& flags, int flag) {
-    Wide<N> has(0.0f);
-    for (int i = 0; i < N; ++i)
-        if (static_cast<int>(flags[i]) & flag) has.Set(i, 1.0f);
-    return has > Wide<N>(0.0f);
+    return LanesWhere<N>([&](int i) { return (static_cast<int>(flags[i]) & flag) != 0; });
 }
 
 // The mask of lanes whose inertia rotates with the body within the step.

@@ -74,10 +74,7 @@ FULCRUM_FORCE_INLINE Vec3<Real> Angular(const Real (&row)[8]) {
 // The mask of lanes in which the bit of ContactBatch::locks is set.
 template <int N>
 WideMask<N> LockedLanes(const uint8_t (&locks)[N], int bit) {
-    Wide<N> is(0.0f);
-    for (int i = 0; i < N; ++i)
-        if (locks[i] >> bit & 1) is.Set(i, 1.0f);
-    return is > Wide<N>(0.0f);
+    return LanesWhere<N>([&](int i) { return (locks[i] >> bit & 1) != 0; });
 }
 // The components of a vector along the free translations of body A (side 0) or B (side 1).
 template <int N, bool kFixedB>

@@ -48,7 +48,7 @@ struct alignas(32) BodyMass {
 
     enum Flags {
         kTurns = 1,  // the inertia rotates with the body from substep to substep
-        // translation along x, y or z is locked, although the body has a mass.
+        // Translation along x, y or z is locked: there is no mobility along it, whatever the inverse mass.
         kLockedX = 2,
         kLockedY = 4,
         kLockedZ = 8

@@ -19,11 +19,6 @@ constexpr int kIterations = 8;
 // separate by a speed along other axes, a hundred times the approach speed. Such points get no impulse.
 constexpr float kLeastResponse = 1e-4f;
 
-struct Side {
-    SymmetricMatrix3 inertia;        // inverse
-    Vector3 mass = Vector3::Zero();  // inverse, along world axes: zero for locked translations
-};
-
 class ImpactSolver {
 public:
     ImpactSolver(const ImpactStores& stores, const SweepHit& hit, Impact& impact) : hit_(hit), v_(impact) {
@@ -32,13 +27,12 @@ public:
             if (!stores.bodies.CanMove(bodies[s])) continue;
             const BodyDynamics& d = stores.bodies.dynamics[bodies[s]];
             const MassOverride& o = hit.massOverride;
-            UniformInverseMass<float> inverse{d.inverseMass, impact.masses[s].InverseInertia()};
-            if (s == 0) ScaleMass(inverse, o.inverseMassScaleA, o.inverseInertiaScaleA);
-            else ScaleMass(inverse, o.inverseMassScaleB, o.inverseInertiaScaleB);
-            side_[s] = {inverse.inertia, Vector3::Constant(inverse.mass)};
-            Vector3 none = Vector3::Zero();
-            d.Lock(side_[s].mass, none);
-            leastResponse_ += kLeastResponse * inverse.mass;
+            InverseMass<float>& side = side_[s];
+            side = {d.inverseMass, impact.masses[s].InverseInertia()};
+            if (s == 0) ScaleMass(side, o.inverseMassScaleA, o.inverseInertiaScaleA);
+            else ScaleMass(side, o.inverseMassScaleB, o.inverseInertiaScaleB);
+            leastResponse_ += kLeastResponse * side.mass.x();
+            side.mass = d.AlongFreeTranslations(side.mass);
         }
         for (int i = 0; i < hit.pointCount; ++i) {
             slipsBefore_[i] = Slip(i);
@@ -131,7 +125,7 @@ private:
 
     const SweepHit& hit_;
     Impact& v_;
-    Side side_[2];
+    InverseMass<float> side_[2];
     bool approaches_ = false;
     float leastResponse_ = 0;                           // 1/kg
     Vector3 slipsBefore_[SweepHit::kMaxPoints];         // m/s, see Slip

@@ -1,8 +1,8 @@
 // What a body is told to be: locked, layered, moved by hand, added, removed, read.
 #include <Fulcrum/Collision/Shapes/Plane.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
-#include <Fulcrum/Physics/Joints/PointJoint.h>
 #include <Fulcrum/Physics/SettingsFields.h>
+#include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/FieldNames.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -180,19 +180,14 @@ TEST(LockedAxes, APendulumSwingsFromALightCart) {
             const BodyId cart = world.Add(
                 {.shape = BoxOf(0.3f, 0.1f, 0.3f), .position = {0, 0, 0}, .mass = 10.0f, .lockedAxes = locks});
             const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = {1, 0, 0}, .mass = mass});
-            PointJointSettings settingsOfJoint;
-            settingsOfJoint.bodyA = cart;
-            settingsOfJoint.bodyB = ball;
-            settingsOfJoint.anchorA = JointAnchor{.point = {0, 0, 0}};
-            settingsOfJoint.anchorB = settingsOfJoint.anchorA;
-            const JointId joint = world.System().Joints().Create(settingsOfJoint).Value();
+            const JointId joint = Join(world, Of<PointJointSettings>(Between(cart, ball, {0, 0, 0})));
             const bool onRail = locks == kOnRailAlongX;
             const double center = onRail ? double{mass} / double{10 + mass} : 0;
             float gap = 0;
             double lowest = 0;
             for (int i = 0; i < 300; ++i) {
                 world.Step();
-                gap = std::max(gap, world.System().Joints().GetError(joint).distance);
+                gap = std::max(gap, JointsOf(world).GetError(joint).distance);
                 lowest = std::min(lowest, world.PositionOf(ball).y());
                 if (onRail) {
                     EXPECT_NEAR((10 * world.PositionOf(cart).x() + double{mass} * world.PositionOf(ball).x()) /

@@ -1,7 +1,6 @@
 #include <Fulcrum/UnitTests/Support/GuidedScene.h>
 
-#include <Fulcrum/Physics/Joints/HingeJoint.h>
-#include <Fulcrum/Physics/Joints/PointJoint.h>
+#include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 namespace fulcrum::testing {
@@ -9,17 +8,6 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr int kSteps = 90;
-
-template <class Settings>
-void Join(TestWorld& world, BodyId a, BodyId b) {
-    Settings settings;
-    settings.bodyA = a;
-    settings.bodyB = b;
-    settings.anchorA.point = (world.Bodies().GetPose(a).position + world.Bodies().GetPose(b).position) * 0.5;
-    settings.anchorA.axis = Vector3(0, 0, 1);
-    settings.anchorB = settings.anchorA;
-    world.System().Joints().Create(settings).Value();
-}
 
 }  // namespace
 
@@ -52,9 +40,14 @@ uint64_t HashOfGuidedScene(uint32_t threads) {
         bodies.push_back(world.Add(body));
         starts.push_back(world.Bodies().GetCenterOfMass(bodies.back()));
     }
-    for (size_t i = 0; i + 1 < bodies.size(); i += 9)
-        if (i % 2 == 0) Join<PointJointSettings>(world, bodies[i], bodies[i + 1]);
-        else Join<HingeJointSettings>(world, bodies[i], bodies[i + 1]);
+    for (size_t i = 0; i + 1 < bodies.size(); i += 9) {
+        const BodyId a = bodies[i], b = bodies[i + 1];
+        const Position middle = (world.Bodies().GetPose(a).position + world.Bodies().GetPose(b).position) * 0.5;
+        JointSettings between = Between(a, b, middle, Vector3(0, 0, 1));
+        between.anchorB = between.anchorA;
+        if (i % 2 == 0) Join(world, Of<PointJointSettings>(between));
+        else Join(world, Of<HingeJointSettings>(between));
+    }
     world.Steps(kSteps);
     for (size_t i = 0; i < bodies.size(); ++i) {
         const Position moved = world.Bodies().GetCenterOfMass(bodies[i]) - starts[i];
