@@ -98,6 +98,11 @@ struct JointRows {
     Real radial;      // 1: the row acts along the line between the anchors and rotates with it
     Real about;       // 1: its error is an angle
     Real waits;       // 1: inactive in this step, because the joint is far apart
+    Real isLock;      // 1: one of the block of lock rows, see JointBatch::lockRowCount
+    // Change of the impulses of the block's rows by a unit of impulse.
+    Real lockRows[JointRowList::kMostLocks];
+    // kg or kg m2: effective mass without the reaction of the block, which gives springs their stiffness.
+    Real freeMass;
     Real pulled;      // N s or N m s: impulse applied to pseudo-velocities, see PullJoints
     uint8_t slot[N];  // 0xFF: no row
 };
@@ -117,6 +122,10 @@ struct JointBatch {
     bool rowsTurnWithA, radial;  // set if any row of any lane has it
     bool turning;                // inertias of some lane turn from substep to substep: they are read again
     JointRows<N>* rows;
+    // Rows that are locks (JointRow::isLock) are solved as one block, by elimination: the response of each includes the
+    // reaction of those before it, so that one pass satisfies all; that of other rows includes the reaction of the
+    // block. Rows from this index on are locks in no lane.
+    uint32_t lockRowCount;
     bool overridesMass = false;  // some lane has a MassOverride
 
     InverseMass<Real> massA, massB;

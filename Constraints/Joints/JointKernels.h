@@ -384,6 +384,58 @@ FULCRUM_FORCE_INLINE void RotateRadialRow(const JointBatch<N>& batch, JointRows<
     row.error = Select(turns, row.startError + sign * (squared * inverse - start), row.error);
 }
 
+// Adds the reaction of the rows that are locks to the responses of the others, and of those before it to each of them.
+template <int N>
+FULCRUM_FORCE_INLINE void AddLockRowReactions(JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    const Real half(0.5f), zero(0.0f);
+    const auto react = [&](JointRows<N>& row, uint32_t count, const WideMask<N>& lanes) {
+        RowResponse<Real> response = row.part.GetResponse();
+        const auto add = [](const WideMask<N>& acts, Vec3<Real>& v, const Vec3<Real>& unit, const Real& impulse) {
+            for (int k = 0; k < 3; ++k) v[k] = Select(acts, Real(v[k] + unit[k] * impulse), v[k]);
+        };
+        for (uint32_t k = 0; k < count; ++k) {
+            const JointRows<N>& lock = batch.rows[k];
+            const auto acts = lanes & (lock.isLock > half);
+            const RowResponse<Real>& unit = lock.part.GetResponse();
+            const Real motion = RelativeMotion<>(lock.part.GetJacobian(), response.a, response.b);
+            const Real impulse = Select(acts, Real(-motion * lock.part.GetEffectiveMass()), zero);
+            add(acts, response.a.linear, unit.a.linear, impulse);
+            add(acts, response.a.angular, unit.a.angular, impulse);
+            add(acts, response.b.linear, unit.b.linear, impulse);
+            add(acts, response.b.angular, unit.b.angular, impulse);
+            add(acts, row.lockLinear, lock.lockLinear, impulse);
+            add(acts, row.lockAngular, lock.lockAngular, impulse);
+            row.lockRows[k] = Select(acts, impulse, row.lockRows[k]);
+        }
+        row.part.SetResponse(response);
+    };
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        batch.rows[i].freeMass = batch.rows[i].part.GetEffectiveMass();
+        for (uint32_t k = 0; k < batch.lockRowCount; ++k) batch.rows[i].lockRows[k] = zero;
+    }
+    for (uint32_t i = 1; i < batch.lockRowCount; ++i) react(batch.rows[i], i, batch.rows[i].isLock > half);
+    for (uint32_t i = 0; i < batch.rowCount; ++i)
+        react(batch.rows[i], batch.lockRowCount, batch.rows[i].isLock <= half);
+}
+
+// The impulses of the rows in the last substep, of locks with their reaction.
+template <int N>
+FULCRUM_FORCE_INLINE void RowImpulses(const JointBatch<N>& batch, Wide<N> (&impulses)[JointRowList::kMaxRows]) {
+    using Real = Wide<N>;
+    const Real half(0.5f);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) impulses[i] = batch.rows[i].part.GetTotalLambda();
+    for (uint32_t i = batch.lockRowCount > 0 ? batch.rowCount : 0; i-- > 0;) {
+        const JointRows<N>& row = batch.rows[i];
+        // By a lock at the impulse that those after it have given it; lanes where row i is none come first.
+        for (uint32_t k = 0; k < batch.lockRowCount; ++k) {
+            if (k == i) continue;
+            const auto acts = batch.rows[k].isLock > half;
+            impulses[k] = Select(acts, Real(impulses[k] + row.lockRows[k] * impulses[i]), impulses[k]);
+        }
+    }
+}
+
 // After the set-up of the locks: responses and effective masses of the rows, and the reaction of the locks to their
 // impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -405,6 +457,10 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
             row.lockAngular = x.angular;
             row.part.SetResponse(response);
         }
+    }
+    if (batch.lockRowCount > 0) AddLockRowReactions(batch);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        JointRows<N>& row = batch.rows[i];
         if (batch.far) row.part.Deactivate(row.waits > Real(0.5f));
         batch.reactionLinear += row.lockLinear * row.part.GetTotalLambda();
         batch.reactionAngular += row.lockAngular * row.part.GetTotalLambda();

@@ -34,6 +34,7 @@ struct JointRow {
     bool turnsWithA = false;  // J rotates with A from substep to substep; else it is constant
     bool about = false;       // C is an angle, although it may depend on positions, too; set by SetAbout
     bool radial = false;      // acts along the line from A's anchor to B's and rotates with it
+    bool isLock = false;      // Equal rows, the first of the list, that are solved as one block
     float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
     SpringSettings spring;
 };
@@ -41,7 +42,8 @@ struct JointRow {
 // The rows of one joint in one step. Only added rows are initialized: a list is made for every joint with rows in every
 // step, and clearing its whole capacity took ten times as long as most joints need to fill it.
 struct JointRowList {
-    static constexpr uint32_t kMaxRows = 24;  // six axes, each with two limits, a motor and friction
+    static constexpr uint32_t kMaxRows = 24;   // six axes, each with two limits, a motor and friction
+    static constexpr uint32_t kMostLocks = 5;  // rows with isLock
 
     class Rows {
     public:

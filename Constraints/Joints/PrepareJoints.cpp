@@ -40,7 +40,7 @@ void ClearLane(JointRows<N>& rows, int lane) {
     for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.earlier, &rows.lowest, &rows.highest,
                        &rows.softness.massScale, &rows.softness.impulseScale, &rows.pushRate, &rows.mostPush,
                        &rows.openAbove, &rows.gapRate, &rows.openSoftness.massScale, &rows.openSoftness.impulseScale,
-                       &rows.turnsWithA, &rows.radial, &rows.about, &rows.waits})
+                       &rows.turnsWithA, &rows.radial, &rows.about, &rows.waits, &rows.isLock})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
 }
@@ -88,6 +88,7 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
     rows.about.Set(lane, row.about ? 1.0f : 0.0f);
+    rows.isLock.Set(lane, row.isLock ? 1.0f : 0.0f);
     if (std::isfinite(previousImpulse)) impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
 
@@ -125,6 +126,14 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
         SetPush(rows, lane, true, s);
         return true;
     }
+    // The stiffness does not change where a path curves and B must rotate along: that would add energy. Where the curve
+    // is so tight that it nearly locks the row, rounding may deactivate it in this substep but not in the next.
+    if (batch.lockRowCount > 0 && batch.rows[0].isLock[lane] > 0.5f) {
+        constexpr float kLeast = 1e-5f;  // as in RowPart::SetResponse
+        const float lighter = mass > 0.0f ? Max(rows.freeMass[lane] / mass, kLeast) : kLeast;
+        constants.squaredFrequency *= lighter;
+        constants.decayRate *= lighter;
+    }
     const auto spring = SpringSoftnessOf<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
     rows.softness.massScale.Set(lane, spring.softness.massScale);
     rows.softness.impulseScale.Set(lane, spring.softness.impulseScale);
@@ -138,7 +147,7 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
               const ConstSolverBodies& bodies, const JointSolveSettings& settings) {
-    batch.rowCount = 0;
+    batch.rowCount = batch.lockRowCount = 0;
     batch.rowsTurnWithA = batch.radial = false;
     batch.wayA = batch.wayB = {};
     if (batch.rowRoom == 0) return;
@@ -189,6 +198,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
                      jacobian, impulse);
             batch.rowsTurnWithA |= list.rows[i].turnsWithA;
             batch.radial |= list.rows[i].radial;
+            if (list.rows[i].isLock && i < JointRowList::kMostLocks) batch.lockRowCount = i + 1;
         }
         rows.part.SetJacobian(jacobian);
         rows.part.RestoreState({impulse});
@@ -429,9 +439,11 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     const float inverse = 1.0f / impulseScale, perSecond = 1.0f / dt;
     const Wrench<N> own(batch, OwnImpulses(batch)), locks(batch, StepImpulses(batch));
     Wrench<N> total = locks;
+    Real impulses[JointRowList::kMaxRows];
+    RowImpulses(batch, impulses);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& rows = batch.rows[i];
-        const Real impulse = rows.earlier + rows.part.GetTotalLambda();
+        const Real impulse = rows.earlier + impulses[i];
         const auto acts = Abs(impulse) > Real(0.0f);
         const Twist<Real>& b = rows.part.GetJacobian().b;
         total.force -= ZeroUnless<Real>(acts, Vec3<Real>(b.linear * -impulse));
@@ -452,8 +464,8 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         type->forces.fill(0.0f);
         for (uint32_t i = 0; i < batch.rowCount; ++i) {
             const JointRows<N>& rows = batch.rows[i];
-            const float lambda = rows.part.SaveState().totalLambda[lane], impulse = lambda * inverse,
-                        force = (rows.earlier[lane] + lambda) * perSecond;
+            const float impulse = rows.part.SaveState().totalLambda[lane] * inverse,
+                        force = (rows.earlier[lane] + impulses[i][lane]) * perSecond;
             if (rows.slot[lane] == 0xFF || !std::isfinite(impulse) || !std::isfinite(force)) continue;
             type->impulses[rows.slot[lane]] = impulse;
             type->forces[rows.slot[lane]] = force;

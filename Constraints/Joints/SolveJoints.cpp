@@ -28,11 +28,12 @@ FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide
 template <int N>
 FULCRUM_FORCE_INLINE void AddTurningRows(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
     using Real = Wide<N>;
+    Real impulses[JointRowList::kMaxRows];
+    RowImpulses(batch, impulses);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
         const Real turns = Max(Max(row.radial, row.turnsWithA), batch.turns) * Real(sign);
-        AddResponse<>(ResponseOf<>(row.part.GetJacobian(), batch.massA, batch.massB),
-                      Real(row.part.GetTotalLambda() * turns), a, b);
+        AddResponse<>(ResponseOf<>(row.part.GetJacobian(), batch.massA, batch.massB), Real(impulses[i] * turns), a, b);
     }
 }
 
@@ -50,7 +51,9 @@ FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
         add(batch.earlierLinear, LinearPart<kLinear>(batch), batch.reactionLinear);
     if constexpr (kAngular != AngularLock::None)
         add(batch.earlierAngular, AngularPart<kAngular>(batch), batch.reactionAngular);
-    for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += batch.rows[i].part.GetTotalLambda();
+    Real impulses[JointRowList::kMaxRows];
+    RowImpulses(batch, impulses);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += impulses[i];
 }
 
 // Ends a substep: computes the change of the impulses due to the rotation of the parts.

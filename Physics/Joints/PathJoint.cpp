@@ -15,10 +15,25 @@ struct PathSlots {
     static constexpr uint32_t kAcross = 0, kAlong = 2, kRotation = 6;
 };
 
-// Arc length of B's anchor along the path.
-double DistanceAlong(const Path& path, double parameter, const PathSample& at, const Vector3& local) {
-    const double beyond = path.IsClosed() ? 0.0 : static_cast<double>(Dot(Vector3(local - at.position), at.tangent));
-    return path.LengthAt(parameter) + beyond;
+// The point nearest to B's anchor: of the path or, beyond the ends of an open one, of its tangent there.
+struct Nearest {
+    PathSample at;
+    Vector3 onPath;   // m, the nearest point of the path itself
+    double distance;  // m, arc length
+};
+
+Nearest NearestOf(const Path& path, double parameter, const Vector3& local) {
+    Nearest nearest{path.Sample(parameter), {}, path.LengthAt(parameter)};
+    PathSample& at = nearest.at;
+    nearest.onPath = at.position;
+    if (path.IsClosed()) return nearest;
+    const float along = Dot(Vector3(local - at.position), at.tangent);
+    nearest.distance += static_cast<double>(along);
+    if ((parameter <= 0.0 && along < 0.0f) || (parameter >= path.End() && along > 0.0f)) {
+        at.position += at.tangent * along;
+        at.second = at.turn = Vector3::Zero();
+    }
+    return nearest;
 }
 
 }  // namespace
@@ -62,30 +77,32 @@ void PathJoint::Start(const JointPose& pose) { parameter_ = path_->Closest(Inver
 void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
     const Vector3 local = InverseRotate(pose.frameA, pose.offset);
     parameter_ = path_->Closest(local, parameter_);
-    const PathSample at = path_->Sample(parameter_);
+    const auto [at, onPath, distance] = NearestOf(*path_, parameter_, local);
+    const AxisControl control = Bounded();
     const Vector3 away = local - at.position;
-    // The force on A acts at the point of the path where B should be: a lever arm as long as the gap would spin up the
-    // bodies.
+    // The force on A acts at the point where B should be: a lever arm as long as the gap would spin up the bodies. A
+    // soft limit lets B run beyond the end.
     constexpr float kNear = 0.1f;  // m
-    const float squaredGap = LengthSquared(away);
+    const Vector3 gap = IsHard(control.limits.spring) ? Vector3(local - onPath) : away;
+    const float squaredGap = LengthSquared(gap);
     const bool isNear = squaredGap < kNear * kNear;
     JointPose acting = pose;
-    if (!isNear) acting.armA -= Rotate(pose.frameA, away);
+    if (!isNear) acting.armA -= Rotate(pose.frameA, gap);
     JointRow along;
     acting.SetAlong(along, Rotate(pose.frameA, at.tangent));
-    const double distance = DistanceAlong(*path_, parameter_, at, local);
-    AddControlRows(Bounded(), pose, along, distance, kLinearSlackSpeed, PathSlots::kAlong, rows);
-    // Far from a curve the nearest point moves along it as bodies rotate, by the gap times their angle, and its frame
-    // rotates by that over the radius of curvature: rotation is locked where that is less than half of their angle.
-    const bool isFollowing = isNear || squaredGap * LengthSquared(at.turn) < 0.25f;
-    if (isFollowing && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal))
-        AddRotationRows(pose, at, along, rows);
     uint32_t slot = PathSlots::kAcross;
     for (const Vector3& normal : {at.normal, at.binormal}) {
         JointRow& row = rows.Add(slot++, JointRow::Kind::Equal);
+        row.isLock = true;
         acting.SetAlong(row, Rotate(pose.frameA, normal));
         row.error = Dot(away, normal);
     }
+    // Far from a curve the nearest point moves along it as bodies rotate, by the gap times their angle, and its frame
+    // rotates by that over the radius of curvature: rotation is locked where that is less than half of their angle.
+    const bool isFollowing = squaredGap * LengthSquared(at.turn) < 0.25f;
+    if (isFollowing && (rotation_ == PathRotation::Tangent || rotation_ == PathRotation::TangentAndNormal))
+        AddRotationRows(pose, at, along, rows);
+    AddControlRows(control, pose, along, distance, kLinearSlackSpeed, PathSlots::kAlong, rows);
 }
 
 void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, const JointRow& along,
@@ -110,6 +127,7 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
     const Vector3 axes[3] = {at.tangent, at.normal, at.binormal};
     for (int k = rotation_ == PathRotation::Tangent ? 1 : 0; k < 3; ++k) {
         JointRow& row = rows.Add(PathSlots::kRotation + static_cast<uint32_t>(k), JointRow::Kind::Equal);
+        row.isLock = true;
         pose.SetAbout(row, Rotate(pose.frameA, axes[k]));
         const float turn = movesFrame ? Dot(axes[k], at.turn) : 0.0f;
         RowJacobian<float>& j = row.jacobian;
@@ -124,8 +142,7 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
 double PathJoint::Coordinate(JointAxis axis, const JointPose& pose) const {
     if (axis != JointAxis::LinearX) return JointType::Coordinate(axis, pose);
     const Vector3 local = InverseRotate(pose.frameA, pose.offset);
-    const double parameter = path_->Closest(local, parameter_);
-    return DistanceAlong(*path_, parameter, path_->Sample(parameter), local);
+    return NearestOf(*path_, path_->Closest(local, parameter_), local).distance;
 }
 
 std::span<double> PathJoint::State() { return {&parameter_, 1}; }

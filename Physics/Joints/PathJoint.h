@@ -1,12 +1,13 @@
 // Path joint: B's anchor stays on a path fixed in A's frame, driven or free, and B may rotate with the path.
 //
 //   P, T, N, B, turn  of the path at the point nearest to B's anchor (Path.h), world space       u = p2 - p1, e = u - P
-//   s           arc length of that point from the start of the path, m; beyond the end of an open path plus e . T
+//   s           arc length of that point from the start of the path, m
 //   Rows:       C = e . N, e . B, J = [-n, -(r1 + u) x n, n, r2 x n] with n = N, B
 //               C = s - ..., the same with n = T (LinearX)
 //               rotation: with c the rotation vector from the path's frame to B's, C = c . n, and
 //               dC/dt = n . (w2 - w1) - (n . turn) ds/dt: the path's frame turns as B moves along
-// An open path has stops at its ends.
+// An open path has stops at its ends. If they are soft, B may run beyond: the path goes on straight there, P = P_end +
+// (e . T) T without turn.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointType.h>

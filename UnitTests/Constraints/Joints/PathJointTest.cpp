@@ -116,14 +116,14 @@ TEST(Path, SaysWhatIsWrong) {
     EXPECT_EQ(errorOf(line, {}), ErrorCode::OutOfRange);
 }
 
-// B on the path at t, turned against the path's frame by `turn`.
-void PlaceOnPath(JointBodies& bodies, const Path& path, double t, const Quaternion& turn) {
+// B on the path at t, turned against the path's frame by `turn`, and `way` m farther along the tangent.
+void PlaceOnPath(JointBodies& bodies, const Path& path, double t, const Quaternion& turn, float way = 0.0f) {
     const PathSample at = path.Sample(t);
     Eigen::Matrix3f axes;
     const Eigen::Vector3f tangent = at.tangent, normal = at.normal, binormal = at.binormal;
     axes << tangent, normal, binormal;
     const Eigen::Quaternionf q(axes);
-    bodies.PlaceB(at.position, Quaternion{q.x(), q.y(), q.z(), q.w()} * turn);
+    bodies.PlaceB(Vector3(at.position + at.tangent * way), Quaternion{q.x(), q.y(), q.z(), q.w()} * turn);
 }
 
 TEST(PathJoint, RowsAreTheDerivativesOfWhatIsOffThePath) {
@@ -139,6 +139,28 @@ TEST(PathJoint, RowsAreTheDerivativesOfWhatIsOffThePath) {
                 PathJoint joint(path, motor, rotation);
                 joint.Start(bodies.Pose());
                 EXPECT_NEAR(joint.Coordinate(JointAxis::LinearX, bodies.Pose()), path->LengthAt(t), 1e-5);
+                ExpectJacobiansOf(joint, bodies, 4e-3f);
+            }
+}
+
+// Beyond an end the path goes on straight, where a soft limit lets B run.
+TEST(PathJoint, RowsAreTheDerivativesOfWhatIsOffTheTangentBeyondTheEnds) {
+    RandomPoses random(17);
+    AxisControl control = Driven(MotorMode::ToPosition, 1.0f);
+    control.limits.spring.frequency = 2.0f;
+    const PathPointer path = MakeBow();
+    for (const PathRotation rotation : {PathRotation::Free, PathRotation::Tangent, PathRotation::TangentAndNormal})
+        for (const double end : {0.0, path->End()})
+            for (const float beyond : {0.02f, 0.3f, 4.0f}) {
+                const float way = end > 0 ? beyond : -beyond;
+                JointBodies bodies = JointBodies::AtRandom(random);
+                PlaceOnPath(bodies, *path, end, rotation == PathRotation::Tangent ? AboutX(0.7f) : Quaternion{}, way);
+                PathJoint joint(path, control, rotation);
+                joint.Start(bodies.Pose());
+                EXPECT_NEAR(joint.Coordinate(JointAxis::LinearX, bodies.Pose()),
+                            path->LengthAt(end) + static_cast<double>(way), 1e-5);
+                for (const auto& [slot, row] : RowsOf(joint, bodies.Pose()))
+                    if (row.kind == JointRow::Kind::Equal) EXPECT_NEAR(row.error, 0.0f, 1e-5f) << slot;
                 ExpectJacobiansOf(joint, bodies, 4e-3f);
             }
 }
