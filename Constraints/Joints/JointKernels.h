@@ -92,6 +92,23 @@ struct JointErrors {
     Vec2<Real> hinge = Vec2<Real>(Real(0.0f), Real(0.0f));
 };
 
+// Lanes in which a limit or an overstretched spring pulls the anchors together.
+template <int N>
+FULCRUM_FORCE_INLINE WideMask<N> IsPulledAlong(const JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    auto isPulled = zero > zero;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        const RowJacobian<Real>& j = row.part.GetJacobian();
+        const auto moves =
+            (Dot<Real>(j.a.linear, j.a.linear) + Dot<Real>(j.b.linear, j.b.linear) > zero) & (row.about <= zero);
+        isPulled = isPulled | (moves & (row.error <= row.openAbove) & (row.mostPush > zero) &
+                               (row.mostPush < Real(JointRow::kUnlimited)));
+    }
+    return isPulled;
+}
+
 // Of a joint that is far apart along its line: the lever arm along it. The way along the line is a gap, too, as far as
 // limits are exceeded. No longer than some radii of gyration, 1 / radius^2 being inverse inertia / inverse mass; bodies
 // without inertia do not spin.
@@ -135,8 +152,11 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         errors.line = Vec2<Real>(Dot<Real>(place.offset, n1), Dot<Real>(place.offset, n2));
         Vec3<Real> reach = place.offset;
         if (batch.far) {
-            const Vec3<Real> shorter = ReachAlongLine<Real>(place.offset, place.line, batch.massA);
-            for (int k = 0; k < 3; ++k) reach[k] = Select(batch.isFar > Real(0.5f), shorter[k], reach[k]);
+            const Real along = Dot<Real>(place.offset, place.line);
+            const Vec3<Real> onLine = place.line * along,
+                             shorter = ReachAlongLine<Real>(place.offset, place.line, batch.massA);
+            const auto isFar = batch.isFar > Real(0.5f), isPulled = IsPulledAlong(batch);
+            for (int k = 0; k < 3; ++k) reach[k] = Select(isFar, Select(isPulled, shorter[k], onLine[k]), reach[k]);
         }
         batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2});
     }

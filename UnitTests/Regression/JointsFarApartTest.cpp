@@ -57,5 +57,11 @@ TEST(WheelsFarApart, AreNotSpunUpByTheGround) {
     for (const uint32_t i : {1528u, 3700u, 8488u}) ExpectToRecover(Kind::Wheel, i);
 }
 
+// On a soft limit bodies were meters apart along their line, which is no gap. But the lever arm along it was cut, so
+// that they drifted off the line as fast as they were pulled back to it, with all springs inactive.
+TEST(SixDofsFarApart, ComeTogetherWhereASpringHoldsThemMetersAlongTheirLine) {
+    for (const uint32_t i : {2477u, 9413u}) ExpectToRecover(Kind::SixDof, i);
+}
+
 }  // namespace
 }  // namespace fulcrum::testing::far_apart
