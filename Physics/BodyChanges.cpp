@@ -11,6 +11,7 @@
 #include <Fulcrum/Physics/World/Materials.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 #include <Fulcrum/Physics/World/SteadyPushes.h>
+#include <Fulcrum/Physics/World/TargetChanges.h>
 #include <Fulcrum/Physics/World/Teleports.h>
 #include <Fulcrum/Physics/World/Waking.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
@@ -286,10 +287,7 @@ Status BodyInterface::SetPenetrationTarget(BodyId id, float target) {
     const WorldChange<&BodyInterface::SetPenetrationTarget> change(world_, id, target);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
-    world_.bodies.SetPenetrationTarget(id.index, target);
-    // Loads are noted as parts of what they may be.
-    std::ranges::fill(world_.pairs.loads, LoadLevel{});
-    world_.coloring.Invalidate();
+    ChangePenetrationTarget(world_, id.index, target);
     return Done{};
 }
 

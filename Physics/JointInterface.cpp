@@ -6,6 +6,7 @@
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
+#include <Fulcrum/Physics/World/TargetChanges.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
 
 #include <algorithm>
@@ -290,9 +291,7 @@ Status JointInterface::SetErrorTarget(JointId id, float target) {
     const WorldChange<&JointInterface::SetErrorTarget> change(world_, id, target);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
-    world_.joints.SetErrorTarget(id.index, target);
-    world_.joints.gaps[id.index] = {};
-    world_.coloring.Invalidate();
+    ChangeErrorTarget(world_, id.index, target);
     return Done{};
 }
 

@@ -8,10 +8,10 @@
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/TargetChanges.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
 
-#include <algorithm>
 #include <cstring>
 
 namespace fulcrum {
@@ -75,15 +75,11 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     // The pair caches of one method are invalid for the other.
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
-    const AccuracyTarget target = world_->settings.accuracy;
     const bool hadBodyEvents = world_->settings.events.bodies;
+    ChangeAccuracy(*world_, settings.accuracy);
     world_->settings = settings;
-    // The efforts of islands, the choice of trees and the loads, which are relative to their limits, depend on the
-    // settings.
+    // The efforts of islands and the choice of trees depend on the settings.
     world_->coloring.Invalidate();
-    if (settings.accuracy.penetration != target.penetration) std::ranges::fill(world_->pairs.loads, LoadLevel{});
-    if (settings.accuracy.jointError != target.jointError || settings.accuracy.drift != target.drift)
-        std::ranges::fill(world_->joints.gaps, GapLevel{});
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
     KeepForEvents(*world_);
     if (!settings.events.bodies) step_->events.bodies = {};

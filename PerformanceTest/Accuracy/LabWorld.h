@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Fulcrum/Fulcrum.h>
+#include <Fulcrum/PerformanceTest/Accuracy/EffortReturns.h>
 #include <Fulcrum/PerformanceTest/Accuracy/LabScene.h>
 
 #include <cmath>
@@ -69,9 +70,8 @@ private:
     std::vector<Built> dynamic_;
     double time_ = 0;
     Work work_;
-    int effort_ = 0;  // the most substeps of an island in the last step
-    bool hasFallen_ = false;
-    std::vector<double> returns_;  // s, when it rose after it had fallen
+    EffortReturns efforts_;
+    std::vector<double> returns_;  // s, when an island's effort rose after it had fallen
     bool isFinite_ = true;
 };
 

@@ -70,8 +70,9 @@ std::string TargetTable(std::span<const SceneRuns> scenes) {
            "error @ cost | cost over the fixed one's |\n| --- | --- | --- | --- | --- |\n" +
            rows + "\nOf " + std::to_string(all) + " pairs of a scene and an error that some fixed effort reaches, " +
            std::to_string(within) + " cost at most 1.3 times as much with a target; " + std::to_string(effortless) +
-           " of these, which one substep reaches, are not listed. The greatest effort of a world rose again after it "
-           "had fallen, in the second half of a run, more than twice in: " +
+           " of these, which one substep reaches, are not listed. The effort of an island rose again after it had "
+           "fallen, though its contacts and joints had stayed the same, in the second half of a run, more than twice "
+           "in: " +
            (returning.empty() ? "none" : returning) + ".\n";
 }
 

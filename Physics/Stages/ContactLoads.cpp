@@ -9,7 +9,6 @@ namespace fulcrum {
 
 namespace {
 
-constexpr uint32_t kMostLevel = 31;
 // Safety factor of weights. With N substeps of P iterations, a load of r times its support's mass comes to rest if N^2
 // P > 2 r, approximately; the allowed penetration of a cube of 1 m alone would give 1.5 r. The rest limits the rebound
 // when such a load is removed to 1 mm for loads of up to 200 times.
@@ -18,7 +17,7 @@ constexpr float kMargin = 1.75f;
 // 0 below 1, then 1 + floor(log2 x).
 uint32_t LevelOf(float x) {
     if (!(x >= 1)) return 0;
-    return std::min((std::bit_cast<uint32_t>(x) >> 23) - 126, kMostLevel);
+    return std::min((std::bit_cast<uint32_t>(x) >> 23) - 126, static_cast<uint32_t>(kMostLevel));
 }
 
 // Filters the level of this step over time and returns the persistent level. isSure: accept it at once. scale:
@@ -28,8 +27,10 @@ uint8_t NextLevel(LoadLevel& load, uint32_t level, bool isSure, const Scale& sca
     load.steps = level > load.level ? static_cast<uint8_t>(std::min(load.steps + 1, 255)) : uint8_t(0);
     const bool lasts = load.steps >= scale.stepsOfLoad || (isSure && level > load.level);
     const uint32_t lasting = isSure ? level : std::min<uint32_t>(level, load.recent);
+    // Of long and short steps that alternate the one kind may ask for more than the other.
+    const uint32_t wanted = scale.isOfOtherLength ? std::max<uint32_t>(level, load.recent) : lasting;
     load.recent = static_cast<uint8_t>(level);
-    if (!lasts && !(scale.forgets && lasting + 1 < load.level)) return load.level;
+    if (!lasts && !(scale.forgets && wanted + 1 < load.level)) return load.level;
     load.steps = 0;
     return static_cast<uint8_t>(lasts ? std::max<uint32_t>(lasting, load.level) : load.level - 1);
 }

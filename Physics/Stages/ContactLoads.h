@@ -7,6 +7,7 @@
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/World/PairStore.h>
+#include <Fulcrum/Physics/World/TargetChanges.h>
 
 #include <cmath>
 #include <limits>
@@ -29,9 +30,10 @@ struct SinkScale {
     float softness;    // s^2: 1 / w^2 for the system's substeps
     float depthScale;  // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
     Vector3 gravity;   // m/s2
-    uint8_t stiffness;    // see LoadLevel
-    uint8_t stepsOfLoad;  // see StepsOfLoad
-    bool forgets;         // levels may decrease: only in few steps, so that efforts do not alternate
+    uint8_t stiffness;     // see LoadLevel
+    uint8_t stepsOfLoad;   // see StepsOfLoad
+    bool forgets;          // levels may decrease: only in few steps, so that efforts do not alternate
+    bool isOfOtherLength;  // the step is longer or shorter than the last one
 };
 
 // A load must persist for this many steps; shorter ones are impacts, or piles that come to rest.
@@ -46,12 +48,13 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
 // Levels of joint errors assume that the gap is proportional to the square of the substep; if it is not, the efforts
 // converge in a few rounds.
 struct GapScale {
-    float target;         // m: AccuracyTarget::jointError
-    float drift;          // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
-    float impulseScale;   // substep of the batch / that of the system's settings
-    uint8_t stiffness;    // see LoadLevel
-    uint8_t stepsOfLoad;  // as SinkScale::stepsOfLoad
-    bool forgets;         // as SinkScale::forgets
+    float target;          // m: AccuracyTarget::jointError
+    float drift;           // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
+    float impulseScale;    // substep of the batch / that of the system's settings
+    uint8_t stiffness;     // see LoadLevel
+    uint8_t stepsOfLoad;   // as SinkScale::stepsOfLoad
+    bool forgets;          // as SinkScale::forgets
+    bool isOfOtherLength;  // as SinkScale::isOfOtherLength
 
     // 1/m: a gap in the batch's substeps times this is 1 where the system's leave LargestUnnoted.
     float PerLevel(float itsTarget) const { return 1 / (LargestUnnoted(itsTarget) * impulseScale * impulseScale); }
@@ -76,9 +79,7 @@ inline bool AdaptsToGaps(const SystemSettings& settings, const JointStore& joint
 // AccuracyTarget::penetration of two bodies, or what they have in its place.
 inline float PenetrationTargetOf(const BodyStore& bodies, uint32_t bodyA, uint32_t bodyB, float system) {
     if (bodies.targetCount == 0) return system;
-    const float a = bodies.cold[bodyA].penetrationTarget, b = bodies.cold[bodyB].penetrationTarget;
-    if (a > 0 && b > 0) return std::min(a, b);
-    return a > 0 || b > 0 ? std::max(a, b) : system;
+    return PenetrationTargetOf(bodies.cold[bodyA].penetrationTarget, bodies.cold[bodyB].penetrationTarget, system);
 }
 
 // m^2: the square of half the edge of a cube with the same inverse mass and sum of inverse moments of inertia.

@@ -191,6 +191,8 @@ constexpr float kStiffening = 3.0776f;
 StepContext ContextOf(const WorldState& world, const StepState& last, double dt) {
     const float substepDt = static_cast<float>(dt) / static_cast<float>(world.settings.solver.substeps);
     const float longer = last.lastSubstepDt > 0 ? substepDt / last.lastSubstepDt : 1.0f;
+    // With the stiffness that short steps allow, bodies that sank during long ones would be thrown apart.
+    const float stiffnessDt = std::max(substepDt, Exp(-kStiffening * static_cast<float>(dt)) * last.stiffnessDt);
     return {.settings = world.settings,
             .listener = world.listener,
             .number = world.step,
@@ -199,9 +201,8 @@ StepContext ContextOf(const WorldState& world, const StepState& last, double dt)
             .lastSubstepDt = last.lastSubstepDt,
             .impulseScale = std::min(longer, kMostImpulseScale),
             .contactImpulseScale = std::min(longer, kMostContactImpulseScale),
-            // With the stiffness that short steps allow, bodies that sank during long ones would be thrown apart.
-            .stiffnessDt = std::max(substepDt, Exp(-kStiffening * static_cast<float>(dt)) * last.stiffnessDt),
-            .softness = SoftnessOf(world.settings, substepDt)};
+            .stiffnessDt = stiffnessDt,
+            .softness = SoftnessOf(world.settings, stiffnessDt)};
 }
 
 // Greater effort first; ties by the lower body index.

@@ -23,7 +23,7 @@ struct StepContext {
     float impulseScale;               // substepDt / lastSubstepDt, at most 2: scales the warm start of joints
     float contactImpulseScale;        // likewise of contacts, at most 8
     float stiffnessDt;                // s: maximum over the last substeps; limits the stiffness of contacts and joints
-    float softness;                   // s^2, of contacts in the settings' substeps: see SinkScale
+    float softness;  // s^2, of contacts in the settings' substeps, as stiff as stiffnessDt allows: see SinkScale
 
     // Whether springs that suffice in the last step are too soft in this one.
     bool Lengthens() const { return substepDt > 1.5f * lastSubstepDt && lastSubstepDt > 0; }

@@ -74,7 +74,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                          .gravity = settings.gravity,
                          .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
                          .stepsOfLoad = stepsOfLoad,
-                         .forgets = forgets};
+                         .forgets = forgets,
+                         .isOfOtherLength = step.substepDt != step.lastSubstepDt};
     };
     const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
         return GapScale{.target = settings.accuracy.jointError,
@@ -82,7 +83,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                         .impulseScale = impulseScale,
                         .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
                         .stepsOfLoad = stepsOfLoad,
-                        .forgets = forgets};
+                        .forgets = forgets,
+                        .isOfOtherLength = step.substepDt != step.lastSubstepDt};
     };
     uint32_t stored[kBatchKinds] = {};
     const auto storeTo = [&](auto&& endOf, const StoreScale& scale) {

@@ -6,6 +6,8 @@
 
 namespace fulcrum {
 
+inline constexpr int kMostLevel = 31;
+
 struct LoadLevel {
     uint8_t level = 0;   // persistent level
     uint8_t recent = 0;  // level of the last step

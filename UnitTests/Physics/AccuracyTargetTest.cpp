@@ -70,6 +70,48 @@ TEST(AccuracyTarget, OfABodyMayBeLooserThanTheWorlds) {
     EXPECT_EQ(efforts[0].culprit, usual);
 }
 
+// A target that changes takes no effort away from what is loaded: with the system's alone, the cube would sink by 4 mm
+// in a few steps.
+TEST(AccuracyTarget, ChangesWithoutAJolt) {
+    TestWorld world(NoSleep());
+    world.AddFloor();
+    const BodyId loaded = AddLoaded(world, 0, 0), other = AddLoaded(world, 10, 0);
+    world.Run(3);
+    const auto sinkOf = [&](BodyId id) { return 0.5 - world.PositionOf(id).y(); };
+    const int substeps = world.System().Report().mostEffort[0].substeps;
+    ASSERT_GT(substeps, SolverSettings{}.substeps);
+    const double sink = sinkOf(loaded);
+    const auto deepestSinkIn = [&](int steps) {
+        double deepest = 0;
+        for (int i = 0; i < steps; ++i) {
+            world.Step();
+            deepest = std::max(deepest, sinkOf(loaded));
+        }
+        return deepest;
+    };
+    // That of another body is none of its business.
+    ASSERT_TRUE(world.Bodies().SetPenetrationTarget(other, 0.002f));
+    EXPECT_LT(deepestSinkIn(60), sink + 1e-6);
+    // The same in other words changes nothing, a tighter one raises it.
+    ASSERT_TRUE(world.Bodies().SetPenetrationTarget(loaded, SystemSettings{}.accuracy.penetration));
+    EXPECT_LT(deepestSinkIn(60), sink + 1e-6);
+    SystemSettings settings = world.System().Settings();
+    settings.accuracy.penetration = 0.001f;
+    ASSERT_TRUE(world.System().SetSettings(settings));
+    EXPECT_LT(deepestSinkIn(60), sink + 1e-6) << "its own target holds";
+    ASSERT_TRUE(world.Bodies().SetPenetrationTarget(loaded, 0));
+    EXPECT_LT(deepestSinkIn(1), sink + 1e-6);
+    EXPECT_GT(world.System().Report().mostEffort[0].substeps, substeps);
+    EXPECT_LT(deepestSinkIn(180), sink + 1e-6);
+    EXPECT_LT(sinkOf(loaded), 0.5 * 0.001);
+    // A looser one lets it sink by less than that, a little at a time.
+    settings.accuracy.penetration = 0.02f;
+    ASSERT_TRUE(world.System().SetSettings(settings));
+    EXPECT_LT(deepestSinkIn(10), sink + 1e-6);
+    EXPECT_LT(deepestSinkIn(300), 0.5 * 0.02);
+    EXPECT_GT(sinkOf(loaded), 2 * sink);
+}
+
 TEST(AccuracyTarget, BadOnesAreRefused) {
     TestWorld world;
     const BodyId body = world.Add({.shape = CubeOf(0.5f)}),
@@ -130,6 +172,27 @@ TEST(AccuracyTarget, OfAJointIsItsOwn) {
     EXPECT_EQ(efforts[0].bodies, 8u);
     EXPECT_LT(LargestGap(world, exact), target);
     EXPECT_GT(LargestGap(world, usual), 2 * target);
+}
+
+// The gaps of loaded joints likewise.
+TEST(AccuracyTarget, OfAJointChangesWithoutAJolt) {
+    SystemSettings settings = WithoutTargets();
+    settings.exactJointLoad = kInfinity;
+    settings.accuracy.jointError = 0.001f;
+    TestWorld world(settings);
+    const std::vector<JointId> rope = AddRope(world, 0);
+    world.Run(8);
+    const double gap = LargestGap(world, rope);
+    const int substeps = world.System().Report().mostEffort[0].substeps;
+    ASSERT_GT(substeps, SolverSettings{}.substeps);
+    for (const JointId id : rope) ASSERT_TRUE(JointsOf(world).SetErrorTarget(id, 0.0005f));
+    for (int i = 0; i < 60; ++i) {
+        world.Step();
+        ASSERT_LT(LargestGap(world, rope), 1.01 * gap) << "step " << i;
+    }
+    world.Run(8);
+    EXPECT_LT(LargestGap(world, rope), 0.0005);
+    EXPECT_GT(world.System().Report().mostEffort[0].substeps, substeps);
 }
 
 TEST(AccuracyTarget, SnapshotsHaveThem) {

@@ -36,6 +36,25 @@ TEST(EffortReport, IsEmptyForAPlainPile) {
     }
 }
 
+// Measured by the springs of the steps of 1/240 s in between, efforts for those of 1/30 s would come and go for ever.
+TEST(EffortReport, EffortsStayWhileStepsAlternate) {
+    for (const float target : {0.004f, 0.001f}) {
+        SystemSettings settings = NoSleep();
+        settings.accuracy.penetration = target;
+        TestWorld world(settings);
+        world.AddFloor();
+        for (int i = 0; i < 5; ++i) AddCube(world, {0.005 * (i * 7 % 3 - 1), 0.5 + i, 0.005 * (i * 5 % 3 - 1)});
+        int changes = 0, effort = 0;
+        for (int step = 0; step < 600; ++step) {
+            world.Step(step % 2 == 0 ? 1.0 / 30 : 1.0 / 240);
+            const int now = world.Report().mostEffort[0].substeps;
+            changes += step >= 120 && now != effort;
+            effort = now;
+        }
+        EXPECT_EQ(changes, 0) << target;
+    }
+}
+
 // Six islands whose joints ask for 8 to 13 substeps, and one whose joint asks for fewer than the settings have.
 TEST(EffortReport, ListsTheGreatestEffortsFirst) {
     TestWorld world(NoGravity());

@@ -97,7 +97,7 @@ function contentsOf(title, isExtreme) {
 
 const { machine, compiler, lanes, commit, date, quick } = data;
 document.getElementById('circumstances').textContent =
-  `${data.scenes.length} scenes, ${quick ? 'short grid' : 'full grid'}; ${date}; commit ${commit ?? 'not known'}; ${machine}; compiler ${compiler}, ${lanes} lanes`;
+  `${data.scenes.length} ${data.scenes.length === 1 ? 'scene' : 'scenes'}, ${quick ? 'short grid' : 'full grid'}; ${date}; commit ${commit ?? 'not known'}; ${machine}; compiler ${compiler}, ${lanes} lanes`;
 document.getElementById('legend').append(...FAMILIES.map(({ label, color }) => {
   const mark = element('i', '');
   mark.style.background = color;
