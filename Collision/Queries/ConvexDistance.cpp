@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace fulcrum {
@@ -88,9 +89,15 @@ void FindDeepestPoints(const SupportPair& pair, ConvexSeparation& result) {
     result.isBeyond = !IsFinite(result.normal) || !IsFinite(result.onA);  // overflow
 }
 
+// libccd is asked with rounded shapes, and the rounding would depend on the reach: it always is that of an infinite
+// one, so that what is measured does not depend on the reach. Pairs that the center line proves to be beyond it are not
+// measured.
 ConvexSeparation MeasureByLibccd(const SupportPair& pair, const RelativePose& bInA, float reach) {
+    constexpr float kAnyReach = std::numeric_limits<float>::infinity();
     CollideCounters unused;
-    const std::optional<KnownContact> known = FindLibccdContact(pair, bInA, reach, unused);
+    std::optional<KnownContact> known;
+    if (!(pair.SeparationAlong(Normalized(pair.position)) > reach + pair.RadiusSum()))
+        known = FindLibccdContact(pair, bInA, kAnyReach, unused);
     ConvexSeparation result;
     if (!known) {
         result.isBeyond = true;

@@ -46,6 +46,12 @@ PairChange LookAtContact(const CollideStores& stores, uint32_t index, PairShapes
     return TouchesSleepingBody(stores.bodies, pair) ? PairChange::WakesOther : change;
 }
 
+// Unit, world axes, from A to B.
+Vector3 NormalOf(const CollideStores& stores, const Pair& pair) {
+    const float* n = stores.pairs.RecordOf(pair).normal;
+    return Rotate(stores.bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2]));
+}
+
 PairChange CollidePair(const CollideStores& stores, std::span<PairChange> changes, uint32_t index,
                        WorkerFindings& findings) {
     Pair& pair = stores.pairs.pairs[index];
@@ -72,6 +78,8 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
             return PairChange::None;
         }
         PairContact& contact = stores.pairs.contacts[pair.contact];
+        if (TurnsFromOthers(stores, view, manifold))
+            findings.turnedNormals.push_back({pair.bodyA, pair.bodyB, NormalOf(stores, pair)});
         WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair));
         contact.reference = view.bInA;
     }
@@ -153,6 +161,29 @@ void AddNewContacts(const CollideStores& stores, PairUpdates& updates, const Ste
     }
 }
 
+// Where a normal turned, the contacts of the same two bodies that pressed the opposite way are not warm started either:
+// nothing balances them now. A child of a compound that a thin floor pushes out on both sides may turn to the other
+// side.
+void ForgetOpposed(const CollideStores& stores, std::span<WorkerFindings> workers) {
+    constexpr float kOpposite = -0.5f;
+    PairStore& pairs = stores.pairs;
+    for (WorkerFindings& findings : workers) {
+        for (const TurnedNormal& turned : findings.turnedNormals) {
+            const auto look = [&](uint32_t index) {
+                const Pair& pair = pairs.pairs[index];
+                const bool isSame = pair.bodyA == turned.bodyA && pair.bodyB == turned.bodyB,
+                           isSwapped = pair.bodyA == turned.bodyB && pair.bodyB == turned.bodyA;
+                if (!(isSame || isSwapped) || pair.pointCount == 0 || pair.surface) return;
+                const float cosine = Dot(NormalOf(stores, pair), turned.before);
+                if ((isSame ? cosine : -cosine) < kOpposite) pairs.RecordOf(pair).ForgetImpulses();
+            };
+            VisitColliders(stores.bodies, stores.colliders, turned.bodyA,
+                           [&](uint32_t collider) { pairs.VisitOf(collider, look); });
+        }
+        findings.turnedNormals.clear();
+    }
+}
+
 void CountContacts(std::span<WorkerFindings> workers, StepReport& report) {
     for (WorkerFindings& f : workers) {
         report.contacts += std::exchange(f.contacts, 0);
@@ -170,6 +201,7 @@ void Collide(const StepContext& step, const BodyStore& bodies, const ColliderSto
     CollideAllActive(stores, updates.changes, workers);
     AddNewContacts(stores, updates, workers);
     AddMoreManifolds(stores, updates, workers.findings);
+    ForgetOpposed(stores, workers.findings);
     CountContacts(workers.findings, report);
 }
 
@@ -180,6 +212,7 @@ void CollideActivated(const StepContext& step, const BodyStore& bodies, const Co
     CollideListed(stores, updates.activated, updates.changes, workers);
     AddNewContacts(stores, updates, workers);
     AddMoreManifolds(stores, updates, workers.findings);
+    ForgetOpposed(stores, workers.findings);
     CountContacts(workers.findings, report);
 }
 

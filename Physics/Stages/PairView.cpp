@@ -64,12 +64,16 @@ void WriteTwistRadius(ContactRecord& record) {
 
 bool IsUsable(const Vector3& normal) { return std::fabs(LengthSquared(normal) - 1) < 0.1f; }
 
-// Whether the contact normal changed direction. The impulses of the last step along the new normal would then no longer
+// Whether the contact normal changes direction. The impulses of the last step along the new normal would then no longer
 // balance the bodies' other contacts, and opposite contacts of a body in a thin floor would throw it out. A rolling
 // body keeps its normal in the other one's frame. Normals are in the frame of shape A.
-bool NormalTurned(const PairView& v, const RelativePose& reference, const Vector3& before, const Vector3& now) {
+bool Turns(const CollideStores& stores, const PairView& v, const Manifold& manifold, const PairContact& contact,
+           const ContactRecord& record) {
+    const Vector3 before = DirectionFromBody(stores, v.pair, {record.normal[0], record.normal[1], record.normal[2]});
+    const Vector3& now = manifold.normal;
     if (Dot<float>(before, now) >= kSameNormal) return false;
-    return Dot<float>(InverseRotate(reference.rotation, before), InverseRotate(v.bInA.rotation, now)) < kSameNormal;
+    return Dot<float>(InverseRotate(contact.reference.rotation, before), InverseRotate(v.bInA.rotation, now)) <
+           kSameNormal;
 }
 
 // Whether the bounding spheres of two bodies are farther apart than `distance`.
@@ -237,6 +241,13 @@ void FindManifold(const CollideStores& stores, const PairView& view, float reach
                 pair.cache, manifold, findings.libccd);
 }
 
+bool TurnsFromOthers(const CollideStores& stores, const PairView& view, const Manifold& manifold) {
+    const Pair& pair = view.pair;
+    if (!pair.offset || pair.pointCount == 0 || manifold.pointCount == 0) return false;
+    const ContactRecord& record = stores.pairs.RecordOf(pair);
+    return record.TotalImpulse() > 0 && Turns(stores, view, manifold, stores.pairs.contacts[pair.contact], record);
+}
+
 void WriteManifold(const CollideStores& stores, const PairView& v, const Manifold& manifold, PairContact& contact,
                    ContactRecord& record) {
     Pair& pair = v.pair;
@@ -246,10 +257,7 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     const bool isUsable = manifold.pointCount == 0 || IsUsable(normal);
     if (!isUsable) pair.cache = {};
     if (manifold.pointCount == 0 || !isUsable) return Forget(pair, record);
-    const Vector3 oldNormal(record.normal[0], record.normal[1], record.normal[2]);
-    const bool goesOn =
-        pair.pointCount > 0 &&
-        !NormalTurned(v, contact.reference, DirectionFromBody(stores, pair, oldNormal), manifold.normal);
+    const bool goesOn = pair.pointCount > 0 && !Turns(stores, v, manifold, contact, record);
     for (int k = 0; k < 3; ++k) record.normal[k] = normal[k];
     float oldImpulses[Manifold::kMaxPoints];
     std::copy(record.impulse, record.impulse + Manifold::kMaxPoints, oldImpulses);

@@ -69,8 +69,13 @@ void WriteSurfaceManifolds(const CollideStores& stores, const PairView& view, ui
 // Whether the manifolds found at contact.reference are still valid.
 bool HardlyMoved(const PairView& view, const PairContact& contact);
 
+// Whether a contact that pressed would change direction, of a child of a compound: its impulses are dropped then, and
+// those of other children that pressed the opposite way must be, too, or they would throw the compound out.
+bool TurnsFromOthers(const CollideStores& stores, const PairView& view, const Manifold& manifold);
+
 // Writes the result of the narrow phase to the pair's contact and record. Impulses are kept for points with matching
-// feature ids. Points farther apart than the speculative distance are kept only if they can touch within the step.
+// feature ids, unless the normal turns. Points farther apart than the speculative distance are kept only if they can
+// touch within the step.
 void WriteManifold(const CollideStores& stores, const PairView& view, const Manifold& manifold, PairContact& contact,
                    ContactRecord& record);
 

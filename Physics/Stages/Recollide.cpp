@@ -58,6 +58,8 @@ void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, 
         Manifold manifold;
         FindManifold(stores, view, reach, manifold, findings);
         if (manifold.pointCount == 0) return MarkApart(pairs, pair);
+        // Other workers may solve what this contact balances: the next step drops the impulses of both.
+        if (TurnsFromOthers(stores, view, manifold)) return;
         WriteManifold(stores, view, manifold, pairs.contacts[pair.contact], pairs.RecordOf(pair));
         pairs.contacts[pair.contact].reference = view.bInA;
         return MarkFound(pairs, pair);

@@ -6,13 +6,13 @@ namespace fulcrum {
 
 size_t HeapBytes(const WorkerFindings& findings) {
     const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
-                 surfaceLeft, surfaceTouched, more, newContacts, sweepHits, sensorCandidates, sensorVisits, sensorTests,
-                 eventPairs, libccd, contacts, points, kept, deepest, deepestPair, clamped, frozen, firstFrozen,
-                 sleepCandidates, loadsChanged, joints] = findings;
+                 surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, sweepHits, sensorCandidates,
+                 sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest, deepestPair, clamped,
+                 frozen, firstFrozen, sleepCandidates, loadsChanged, joints] = findings;
     return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
-                     surfacePlaces, surfaceLeft, surfaceTouched, more, newContacts, sweepHits, sensorCandidates,
-                     sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest, deepestPair,
-                     clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, joints);
+                     surfacePlaces, surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, sweepHits,
+                     sensorCandidates, sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest,
+                     deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, joints);
 }
 
 size_t HeapBytes(const PairUpdates& updates) {

@@ -33,6 +33,12 @@ struct NewContact {
     ContactRecord record;
 };
 
+// A contact whose normal turned, of bodies that may have several contacts with each other: see TurnsFromOthers.
+struct TurnedNormal {
+    uint32_t bodyA, bodyB;
+    Vector3 before;  // what the normal was: unit, world axes, from A to B
+};
+
 // One worker's results of a stage; merged in an order that does not depend on the distribution of work.
 struct alignas(64) WorkerFindings {
     Array<uint32_t> colliders;         // UpdateBounds: those that left their fat bounds
@@ -45,6 +51,7 @@ struct alignas(64) WorkerFindings {
     Array<uint32_t> surfacePlaces, surfaceLeft, surfaceTouched;  // Collide: likewise
     Array<MoreManifold> more;                                    // Collide: manifolds without a slot yet
     Array<NewContact> newContacts;                               // Collide
+    Array<TurnedNormal> turnedNormals;                           // Collide
     Array<SweepHit> sweepHits;                                   // Continuous
     Array<uint64_t> sensorCandidates;                            // Sense
     Array<SensorVisit> sensorVisits;                             // likewise
