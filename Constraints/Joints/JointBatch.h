@@ -111,6 +111,7 @@ struct JointBatch {
     uint32_t fixedA, fixedB;          // bit i: the body of lane i is not dynamic
     uint32_t kinematicA, kinematicB;  // bit i: but it moves
     uint32_t inTree;                  // bit i: the direct solver solves the locks of lane i, see JointTree.h
+    uint32_t strained;                // bit i: at the start of the step, see JointStrain.h
     LinearLock linear;
     AngularLock angular;
     uint32_t rowCount;           // maximum over the lanes

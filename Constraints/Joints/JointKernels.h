@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Constraints/Joints/FarJoints.h>
 #include <Fulcrum/Constraints/Joints/JointLanes.h>
+#include <Fulcrum/Constraints/Joints/JointStrain.h>
 
 #include <cmath>
 
