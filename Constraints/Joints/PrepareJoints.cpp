@@ -268,6 +268,8 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindStrained(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors) {
     using Real = Wide<N>;
+    batch.strained = 0;
+    if constexpr (kAngular == AngularLock::None) return;
     const auto squared = [](const auto& error) {
         Real sum(0.0f);
         for (int k = 0; k < error.size(); ++k) sum += error[k] * error[k];

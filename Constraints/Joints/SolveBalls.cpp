@@ -45,22 +45,6 @@ void GatherMasses(BallBatch<N>& batch, const BodyMass* masses) {
     }
 }
 
-// Finds the joints that are strained, see JointStrain.h. Those of a teleport are not: they are pulled.
-template <bool kRound, int N>
-FULCRUM_FORCE_INLINE void FindStrained(BallBatch<N>& batch) {
-    using Real = Wide<N>;
-    const Real gap = Dot<Real>(batch.startOffset, batch.startOffset);
-    const auto isLarge = [&](const Vec3<Real>& arm, const Real& inverseMass, const Real& trace) {
-        return IsStrainedBy<Real>(gap, Dot<Real>(arm, arm), inverseMass, trace);
-    };
-    const auto traceOf = [](const Sym3<Real>& inertia) { return inertia.xx + inertia.yy + inertia.zz; };
-    const Real traceA = kRound ? Real(3.0f) * batch.inverseInertiaA : traceOf(batch.inertiaA),
-               traceB = kRound ? Real(3.0f) * batch.inverseInertiaB : traceOf(batch.inertiaB);
-    const auto isStrained =
-        isLarge(batch.startArmA, batch.inverseMassA, traceA) | isLarge(batch.startArmB, batch.inverseMassB, traceB);
-    batch.strained = (isStrained & (batch.secondsOfTeleport <= Real(0.0f))).ToBits();
-}
-
 // Applies an impulse at the arms to the velocities.
 template <bool kRound, int N>
 FULCRUM_FORCE_INLINE void AddImpulse(const BallBatch<N>& batch, const Vec3<Wide<N>>& armA, const Vec3<Wide<N>>& armB,
@@ -340,11 +324,9 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstS
     if (batch.round) {
         GatherMasses<true>(batch, bodies.masses);
         batch.mass = MassAt<true>(batch, place.armA, place.armB);
-        FindStrained<true>(batch);
     } else {
         GatherMasses<false>(batch, bodies.masses);
         batch.mass = MassAt<false>(batch, place.armA, place.armB);
-        FindStrained<false>(batch);
     }
     const auto moves = batch.mass.xx + batch.mass.yy + batch.mass.zz > Real(0.0f);
     batch.impulse =

@@ -23,6 +23,7 @@ struct Component {
     bool anchored = false;       // some joint connects to an immovable body
     bool overridesMass = false;  // some joint overrides masses, which trees do not support
     bool isStrained = false;     // some joint has been strained
+    bool isLever = true;         // all joints pass torque on
 };
 
 bool HasLocks(const Joint& joint) {
@@ -89,6 +90,7 @@ private:
             bool anchored = false;
             VisitJoints(body, [&](uint32_t, const Joint& joint, int side) {
                 component.isStrained |= joint.isStrained;
+                component.isLever &= joint.type->Locks().angular != AngularLock::None;
                 const uint32_t other = joint.body[1 - side];
                 anchored |= joint.fixed[1 - side];
                 component.overridesMass |= joint.overridesMass;
@@ -146,7 +148,8 @@ private:
         tree.load = LargestLoad(tree);
         // Iterations leave a stretch proportional to the mean load; for a rope that carries only its own weight that is
         // half the load at its top. It decreases with the square of the substeps.
-        const bool isStrained = component.isStrained && std::isfinite(exactLoad_);
+        // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it.
+        const bool isStrained = component.isStrained && component.isLever && std::isfinite(exactLoad_);
         const bool isRope = LargestMassRatio(tree) <= kEvenMasses;
         float substeps = 0;
         if (isRope) {

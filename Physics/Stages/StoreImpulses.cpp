@@ -52,7 +52,6 @@ template <int N>
 void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
     StoreJoints(batch, to.joints.records.data(), scale.dt, scale.impulseScale);
     if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.bodies, to.joints);
-    findings.strainsBegan |= NoteStrained(batch, to.joints);
 }
 
 template <class Batch>
