@@ -115,6 +115,8 @@ struct JointBatch {
     int32_t count;
     uint32_t fixedA, fixedB;          // bit i: the body of lane i is not dynamic
     uint32_t kinematicA, kinematicB;  // bit i: but it moves
+    uint32_t inTree;                  // bit i: the direct solver solves the locks of lane i, see JointTree.h
+    uint32_t strained;                // bit i: at the start of the step, see JointStrain.h
     LinearLock linear;
     AngularLock angular;
     uint32_t rowCount;           // maximum over the lanes
@@ -183,6 +185,7 @@ struct JointSolveSettings {
     // Errors are corrected by a soft block, like contact overlaps: see ContactSolveSettings.
     float pushRate;
     RowSoftness<float> softness;
+    float treePushRate;  // 1/s, of locks in trees, which are hard: softness would undo part of the direct solution
     float maxPushSpeed;  // m/s and rad/s
     bool pushes;         // false: errors are corrected by position iterations (CorrectJoints), and rows are hard
     float baumgarte;  // 0..1: fraction of an error corrected per position iteration, limited to maxPushSpeed substepDt

@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Constraints/Joints/FarJoints.h>
 #include <Fulcrum/Constraints/Joints/JointLanes.h>
+#include <Fulcrum/Constraints/Joints/JointStrain.h>
 
 #include <cmath>
 
@@ -541,10 +542,17 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors,
                                  const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
+    RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
+    Real rate(settings.pushes ? settings.pushRate : 0.0f);
+    const Real most(settings.maxPushSpeed);
+    if (batch.inTree != 0) {
+        const auto isExact = LanesWhere<N>([&](int i) { return (batch.inTree >> i & 1) != 0; });
+        softness.massScale = Select(isExact, Real(1.0f), softness.massScale);
+        softness.impulseScale = Select(isExact, Real(0.0f), softness.impulseScale);
+        rate = Select(isExact, Real(settings.treePushRate), rate);
+    }
     const auto push = [&](const auto& error) {
         auto bias = error;
-        const Real rate(settings.pushes ? settings.pushRate : 0.0f), most(settings.maxPushSpeed);
         for (int k = 0; k < bias.size(); ++k) bias[k] = Clamp<Real>(error[k] * rate, -most, most);
         return bias;
     };

@@ -274,6 +274,32 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
 }
 
+// Finds the joints that are strained, see JointStrain.h. Those of a teleport are not: they are pulled.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+void FindStrained(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors) {
+    using Real = Wide<N>;
+    batch.strained = 0;
+    if constexpr (kAngular == AngularLock::None) return;
+    const auto squared = [](const auto& error) {
+        Real sum(0.0f);
+        for (int k = 0; k < error.size(); ++k) sum += error[k] * error[k];
+        return sum;
+    };
+    Real gap(0.0f), angle(0.0f);
+    if constexpr (kLinear == LinearLock::Point) gap = squared(errors.point);
+    if constexpr (kLinear == LinearLock::Line) gap = squared(errors.line);
+    if constexpr (kAngular == AngularLock::All) angle = squared(errors.rotation);
+    if constexpr (kAngular == AngularLock::Axis) angle = squared(errors.hinge);
+    const auto isLarge = [&](const InverseMass<Real>& mass, const Vec3<Real>& arm) {
+        const Sym3<Real>& inertia = mass.inertia;
+        return IsStrainedBy<Real>(gap, Dot<Real>(arm, arm), Max(Max(mass.mass.x(), mass.mass.y()), mass.mass.z()),
+                                  inertia.xx + inertia.yy + inertia.zz);
+    };
+    const auto isStrained = isLarge(batch.massA, batch.startArmA) | isLarge(batch.massB, batch.startArmB) |
+                            (angle > Real(kStrain * kStrain));
+    batch.strained = (isStrained & (batch.secondsOfTeleport <= Real(0.0f))).ToBits();
+}
+
 }  // namespace
 
 template <int N>
@@ -353,6 +379,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         FillRows<linear, angular>(batch, records, types, bodies, settings);
         FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], settings);
         findings.far |= batch.far;
+        FindStrained<linear, angular>(batch, errors);
         Soften<linear, angular>(batch, errors, settings);
     });
 }

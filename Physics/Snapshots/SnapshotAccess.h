@@ -217,7 +217,7 @@ void SnapshotAccess::VisitFree(Stream& s, Pairs& store) {
 
 template <class Stream, class Joints>
 bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
-    auto& [records, types, joints, gaps, breakable, targetCount, first, free, count] = store;
+    auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, first, free, count] = store;
     s.Begin(SnapshotSection::Joints);
     for (uint32_t i = 0; i < joints.size(); ++i) {
         s.Reserve(kMostOfJoint);

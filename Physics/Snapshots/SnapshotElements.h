@@ -322,7 +322,8 @@ void VisitJointRecord(Stream& s, Record& record) {
 template <class Stream, class Joint>
 bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, fixed,
-           priority, breakForce, breakTorque, effort, errorTarget, massOverride, userData, teleportedBefore] = joint;
+           isStrained, priority, breakForce, breakTorque, effort, errorTarget, massOverride, userData,
+           teleportedBefore] = joint;
     s(generation, exists);
     if (!exists) return false;
     auto& [linear, angular, line, axis] = locks;
@@ -333,7 +334,7 @@ bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     VisitEffort(s, effort);
     if (overridesMass) VisitMassOverride(s, massOverride);
     else if constexpr (!Stream::kWrites) massOverride = {};
-    s(teleportedBefore);
+    s(teleportedBefore, isStrained);
     return true;
 }
 

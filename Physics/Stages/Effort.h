@@ -111,6 +111,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     joints.impulseScale = step.impulseScale * effort.impulseScale;
     joints.pushRate = push.pushRate;
     joints.softness = push.softness;
+    joints.treePushRate = kTreePush / h;
     // Trees are solved exactly, and corrected by velocities.
     const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte && !group.HasTrees();
     if (!corrects) effort.solver.positionCorrection = PositionCorrection::SoftRelax;
@@ -123,11 +124,6 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
         contacts.pushRate = contacts.stiffening = contacts.impulseScale = 0;
         contacts.massScale = 1;
         joints.softness = {};
-    }
-    if (group.HasTrees()) {
-        // Softness would undo part of the direct solution.
-        joints.pushRate = kTreePush / h;
-        joints.softness = {1, 0};
     }
     joints.maxPushSpeed = s.jointPushSpeed;
     joints.continues = joints.firstPass = false;

@@ -79,6 +79,7 @@ void FillBatch(const BodyStore& bodies, const JointStore& store, JointBatch<N>& 
                std::span<const SortedJoint> joints) {
     FillLanes(bodies, store, batch, batch.joint, joints);
     batch.rowCount = batch.rowRoom = 0;
+    batch.inTree = 0;  // see PlaceTrees
     batch.overridesMass = false;
     for (const SortedJoint& sorted : joints) {
         const Joint& joint = store.joints[sorted.joint];

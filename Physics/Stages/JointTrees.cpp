@@ -22,6 +22,8 @@ struct Component {
     uint32_t root = kNone;
     bool anchored = false;       // some joint connects to an immovable body
     bool overridesMass = false;  // some joint overrides masses, which trees do not support
+    bool isStrained = false;     // some joint has been strained
+    bool isLever = true;         // all joints pass torque on
 };
 
 bool HasLocks(const Joint& joint) {
@@ -87,6 +89,8 @@ private:
             const uint32_t body = queue_[i];
             bool anchored = false;
             VisitJoints(body, [&](uint32_t, const Joint& joint, int side) {
+                component.isStrained |= joint.isStrained;
+                component.isLever &= joint.type->Locks().angular != AngularLock::None;
                 const uint32_t other = joint.body[1 - side];
                 anchored |= joint.fixed[1 - side];
                 component.overridesMass |= joint.overridesMass;
@@ -144,15 +148,17 @@ private:
         tree.load = LargestLoad(tree);
         // Iterations leave a stretch proportional to the mean load; for a rope that carries only its own weight that is
         // half the load at its top. It decreases with the square of the substeps.
+        // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it.
+        const bool isStrained = component.isStrained && component.isLever && std::isfinite(exactLoad_);
         const bool isRope = LargestMassRatio(tree) <= kEvenMasses;
         float substeps = 0;
         if (isRope) {
             tree.load *= 0.5f;
             substeps = std::sqrt(tree.load / (exactLoad_ * errorDivisor_));
         }
-        if (isRope && substeps <= kMostSubsteps) {
+        if (isRope && substeps <= kMostSubsteps && !isStrained) {
             if (substeps > 1) trees_.ropes.push_back({component.root, substeps});
-        } else if (loops * 4 <= joints && tree.load > exactLoad_) {
+        } else if (loops * 4 <= joints && (tree.load > exactLoad_ || isStrained)) {
             AddBlocks(tree);
             trees_.trees.push_back(tree);
             return;
@@ -238,8 +244,9 @@ private:
 
 void FindJointTrees(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
                     const SystemSettings& settings, JointTrees& trees, ScratchArena& scratch) {
-    if (trees.version == coloring.JointVersion()) return;
+    if (trees.version == coloring.JointVersion() && trees.strainVersion == joints.strainVersion) return;
     trees.version = coloring.JointVersion();
+    trees.strainVersion = joints.strainVersion;
     trees.trees.clear();
     trees.ropes.clear();
     trees.slots.clear();

@@ -1,6 +1,6 @@
-// Finds the islands whose joints are solved by the direct tree solver: those that carry much more than their own
-// bodies' mass. Called by the BuildIslands stage if joints were added or removed. Serial; the result depends only on
-// the joints.
+// Finds the mechanisms whose joints are solved by the direct tree solver: those that carry much more than their own
+// bodies' mass, and those with a joint that has been strained (JointStrain.h). Called by the BuildIslands stage if
+// joints were added or removed, or began to be strained. Serial; the result depends only on the joints.
 #pragma once
 
 #include <Fulcrum/Constraints/Joints/JointTree.h>
@@ -31,7 +31,7 @@ struct JointTrees {
     Array<JointTreeSlot> slots;  // parents and blocks are relative to the tree's first ones
     Array<JointTreeBlock> blocks;
     Array<JointTreeAnchor> anchors;
-    uint64_t version = 0;  // version of the joints from which this was computed
+    uint64_t version = 0, strainVersion = 0;  // versions of the joints from which this was computed
 
     JointTree At(const Tree& tree) {
         return {std::span(slots).subspan(tree.slotsBegin, tree.slotsEnd - tree.slotsBegin),
@@ -45,8 +45,8 @@ inline size_t HeapBytes(const JointTreeSlot&) { return 0; }
 inline size_t HeapBytes(const JointTreeBlock&) { return 0; }
 inline size_t HeapBytes(const JointTreeAnchor&) { return 0; }
 inline size_t HeapBytes(const JointTrees& all) {
-    const auto& [trees, ropes, slots, blocks, anchors, version] = all;
-    return HeapBytes(trees, ropes, slots, blocks, anchors, version);
+    const auto& [trees, ropes, slots, blocks, anchors, version, strainVersion] = all;
+    return HeapBytes(trees, ropes, slots, blocks, anchors, version, strainVersion);
 }
 
 // Updates the trees from the colored joints. Reads the settings' exactJointLoad and solver.

@@ -35,6 +35,13 @@ void PlaceTrees(const BodyStore& bodies, const Islands& islands, size_t jointCou
         SolverGroup& group = layout.groups[entry >> 32];
         // Groups of several islands are solved without trees: their trees are parts of islands that are too large.
         if (entry >> 32 == Islands::kLargeGroup) continue;
+        const JointTree tree = layout.trees.At(layout.trees.trees[entry & 0xFFFFFFFFu]);
+        const auto mark = [&](const JointPlaceInBatch& place) {
+            layout.joints.batches[place.batch].inTree |= 1u << place.lane;
+        };
+        for (const JointTreeSlot& slot : tree.slots)
+            if (slot.joint != JointTreeSlot::kNone) mark(slot.place);
+        for (const JointTreeAnchor& anchor : tree.anchors) mark(anchor.place);
         if (!group.HasTrees()) group.treesBegin = static_cast<uint32_t>(layout.treesByGroup.size());
         layout.treesByGroup.push_back(static_cast<uint32_t>(entry));
         group.treesEnd = static_cast<uint32_t>(layout.treesByGroup.size());

@@ -8,11 +8,11 @@ size_t HeapBytes(const WorkerFindings& findings) {
     const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
                  surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, sweepHits, sensorCandidates,
                  sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest, deepestPair, clamped,
-                 frozen, firstFrozen, sleepCandidates, loadsChanged, joints] = findings;
+                 frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan, joints] = findings;
     return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
                      surfacePlaces, surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, sweepHits,
                      sensorCandidates, sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest,
-                     deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, joints);
+                     deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan, joints);
 }
 
 size_t HeapBytes(const PairUpdates& updates) {

@@ -4,6 +4,8 @@
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
+#include <bit>
+#include <utility>
 
 namespace fulcrum {
 
@@ -24,6 +26,15 @@ struct StoreScale {
     const GapScale* gap;    // for joints; null if load levels are off
 };
 
+// Returns whether a joint began to be strained.
+template <class Batch>
+bool NoteStrained(const Batch& batch, JointStore& joints) {
+    bool began = false;
+    for (uint32_t lanes = batch.strained; lanes != 0; lanes &= lanes - 1)
+        began |= !std::exchange(joints.joints[batch.joint[std::countr_zero(lanes)]].isStrained, true);
+    return began;
+}
+
 template <int N, bool kFixedB>
 void StoreBatch(const Records& to, const ContactBatch<N, kFixedB>& batch, const StoreScale& scale,
                 WorkerFindings& findings) {
@@ -35,6 +46,7 @@ void StoreBatch(const Records& to, const JointBatch<N>& batch, const StoreScale&
     StoreJoints(batch, to.joints.records.data(), to.joints.types.data(), to.bodies.states.data(), scale.dt,
                 scale.impulseScale);
     if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.bodies, to.joints);
+    findings.strainsBegan |= NoteStrained(batch, to.joints);
 }
 template <int N>
 void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
@@ -117,8 +129,9 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
     }
     storeTo([](const auto& list, BatchKind) { return list.count; }, usual);
     for (WorkerFindings& findings : workers.findings) {
-        pairs.loadVersion += findings.loadsChanged;
-        findings.loadsChanged = false;
+        joints.strainVersion += findings.strainsBegan;
+        pairs.loadVersion += findings.loadsChanged || findings.strainsBegan;
+        findings.loadsChanged = findings.strainsBegan = false;
     }
 }
 

@@ -94,8 +94,8 @@ bool JointStore::ForbidsContact(uint32_t bodyA, uint32_t bodyB) const {
 size_t HeapBytes(const Joint& joint) { return joint.type ? sizeof(JointType) : 0; }
 
 size_t HeapBytes(const JointStore& store) {
-    const auto& [records, types, joints, gaps, breakable, targetCount, first, free, count] = store;
-    return HeapBytes(records, types, joints, gaps, breakable, targetCount, first, free, count);
+    const auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, first, free, count] = store;
+    return HeapBytes(records, types, joints, gaps, breakable, targetCount, strainVersion, first, free, count);
 }
 
 }  // namespace fulcrum

@@ -55,6 +55,7 @@ struct Joint {
     bool collideConnected = false;
     bool overridesMass = false;      // massOverride is not none
     bool fixed[2] = {false, false};  // the body is immovable: static, kinematic or frozen
+    bool isStrained = false;         // has been since it was colored, see JointStrain.h
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
     LeastEffort effort;     // minimum effort for its island
@@ -82,7 +83,8 @@ public:
     Array<Joint> joints;
     Array<GapLevel> gaps;  // of gaps between anchors
     IndexSet breakable;
-    uint32_t targetCount = 0;  // joints with an errorTarget
+    uint32_t targetCount = 0;    // joints with an errorTarget
+    uint64_t strainVersion = 0;  // incremented when a joint begins to be strained
 
     uint32_t Count() const { return count_; }
     void Reserve(size_t more);  // room for more joints
