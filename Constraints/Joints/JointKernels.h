@@ -536,6 +536,10 @@ FULCRUM_FORCE_INLINE WideMask<N> IsPushedFast(const JointBatch<N>& batch) {
     return IsPushedFast(batch, fastest);
 }
 
+// m/s and rad/s, of the locks of trees: a direct solution passes a push on to the whole mechanism, and a contact of it
+// relaxes only a part.
+inline constexpr float kMostTreePush = 2.0f;
+
 // Sets the error correction of the next velocity iterations. Locks that are far apart get a pull (pseudo-velocity)
 // instead.
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -544,12 +548,13 @@ FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>
     using Real = Wide<N>;
     RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
     Real rate(settings.pushes ? settings.pushRate : 0.0f);
-    const Real most(settings.maxPushSpeed);
+    Real most(settings.maxPushSpeed);
     if (batch.inTree != 0) {
         const auto isExact = LanesWhere<N>([&](int i) { return (batch.inTree >> i & 1) != 0; });
         softness.massScale = Select(isExact, Real(1.0f), softness.massScale);
         softness.impulseScale = Select(isExact, Real(0.0f), softness.impulseScale);
         rate = Select(isExact, Real(settings.treePushRate), rate);
+        most = Select(isExact, Min(most, Real(kMostTreePush)), most);
     }
     const auto push = [&](const auto& error) {
         auto bias = error;

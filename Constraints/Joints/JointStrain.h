@@ -1,6 +1,6 @@
 // Joints that are strained: impacts and contacts have moved their bodies apart faster than iterations of single joints
-// could prevent. The mechanism of a strained joint is solved by the direct solver for some time (Stages/JointTrees.h).
-// Shared by the kernels of joints and of ball joints. Free functions over lanes, no state.
+// could prevent. From then until they sleep, a mechanism whose joints all pass torque on is solved by the direct solver
+// (Stages/JointTrees.h). Free functions over lanes, no state.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodyState.h>

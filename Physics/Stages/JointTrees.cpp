@@ -148,8 +148,11 @@ private:
         tree.load = LargestLoad(tree);
         // Iterations leave a stretch proportional to the mean load; for a rope that carries only its own weight that is
         // half the load at its top. It decreases with the square of the substeps.
-        // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it.
-        const bool isStrained = component.isStrained && component.isLever && std::isfinite(exactLoad_);
+        // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it. What is
+        // held by several joints is no lever, and a direct solution of it would be no better: of the joints that close
+        // a loop iterations undo a part.
+        const bool isStrained =
+            component.isStrained && component.isLever && loops + anchors == 0 && std::isfinite(exactLoad_);
         const bool isRope = LargestMassRatio(tree) <= kEvenMasses;
         float substeps = 0;
         if (isRope) {

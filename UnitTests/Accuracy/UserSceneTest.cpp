@@ -133,8 +133,8 @@ TEST_F(UserScene, OfTheSamplesErrsLessWithMoreSubsteps) {
     ASSERT_TRUE(command) << command.GetError().message;
     const std::vector<RunRecord> runs = RunAt(command.Value().lab, {1, 4, 16});
     ASSERT_EQ(runs.size(), 3u);
-    EXPECT_GT(runs[0].Error(), runs[1].Error());
-    EXPECT_GT(runs[1].Error(), runs[2].Error());
+    EXPECT_GT(runs[0].Error(), runs[1].Error()) << runs[0].worst << "; " << runs[1].worst;
+    EXPECT_GT(runs[1].Error(), runs[2].Error()) << runs[1].worst << "; " << runs[2].worst;
     for (const RunRecord& run : runs) EXPECT_TRUE(run.failedConditions.empty());
 }
 

