@@ -12,6 +12,8 @@ constexpr uint32_t kNone = JointTreeSlot::kNone;
 constexpr uint32_t kMostSlots = 4096;  // bodies: a tree is solved by one worker
 // Bodies whose masses differ at most by this factor count as carrying only their own weight.
 constexpr float kEvenMasses = 2;
+// A lever has at least so many joints one after the other: not the wheels of a car.
+constexpr uint32_t kLeastLever = 3;
 // Joints that carry only their own bodies are iterated if that takes at most this many times the system's substeps: a
 // tree of hinges costs ten to twenty times as much as iterations.
 constexpr float kMostSubsteps = 3;
@@ -151,8 +153,8 @@ private:
         // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it. What is
         // held by several joints is no lever, and a direct solution of it would be no better: of the joints that close
         // a loop iterations undo a part.
-        const bool isStrained =
-            component.isStrained && component.isLever && loops + anchors == 0 && std::isfinite(exactLoad_);
+        const bool isStrained = component.isStrained && component.isLever && loops + anchors == 0 &&
+                                std::isfinite(exactLoad_) && LongestPath(tree) >= kLeastLever;
         const bool isRope = LargestMassRatio(tree) <= kEvenMasses;
         float substeps = 0;
         if (isRope) {
@@ -212,6 +214,20 @@ private:
             lightest = std::min(lightest, mass);
         }
         return heaviest / lightest;
+    }
+
+    // The number of joints on the longest path from one body to another.
+    uint32_t LongestPath(const JointTrees::Tree& tree) const {
+        const size_t count = tree.slotsEnd - tree.slotsBegin;
+        std::span<uint32_t> height = scratch_.Allocate<uint32_t>(count);
+        std::fill(height.begin(), height.end(), 0u);
+        uint32_t longest = 0;
+        for (size_t s = count; s-- > 1;) {
+            const uint32_t parent = trees_.slots[tree.slotsBegin + s].parent;
+            longest = std::max(longest, height[parent] + height[s] + 1);
+            height[parent] = std::max(height[parent], height[s] + 1);
+        }
+        return longest;
     }
 
     float LargestLoad(const JointTrees::Tree& tree) const {
