@@ -148,13 +148,13 @@ private:
         const size_t bodies = tree.slotsEnd - tree.slotsBegin - (hook != kNone);
         const size_t loops = joints - (bodies - 1);
         tree.load = LargestLoad(tree);
-        // Iterations leave a stretch proportional to the mean load; for a rope that carries only its own weight that is
-        // half the load at its top. It decreases with the square of the substeps.
         // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it. What is
         // held by several joints is no lever, and a direct solution of it would be no better: of the joints that close
         // a loop iterations undo a part.
         const bool isStrained = component.isStrained && component.isLever && loops + anchors == 0 &&
                                 std::isfinite(exactLoad_) && LongestPath(tree) >= kLeastLever;
+        // Iterations leave a stretch proportional to the mean load; for a rope that carries only its own weight that is
+        // half the load at its top. It decreases with the square of the substeps.
         const bool isRope = LargestMassRatio(tree) <= kEvenMasses;
         float substeps = 0;
         if (isRope) {
