@@ -203,8 +203,8 @@ struct SystemSettings {
     float jointFrequency = std::numeric_limits<float>::infinity();  // Hz, likewise: frequency of soft joint locks
     float jointDampingRatio = 1.0f;                                 // 0..1e6
     // Trees of joints whose load exceeds this multiple of their own bodies' mass are solved by the direct solver; twice
-    // this if all masses are alike, as in an unloaded rope; so are bodies whose joints all lock rotations, once one of
-    // them has been torn a little (Docs/Joints.md). > 0, infinite: never.
+    // this if all masses are alike, as in an unloaded rope; so are three joints and more one after the other that
+    // all lock rotations, once one of them has been torn a little (Docs/Joints.md). > 0, infinite: never.
     float exactJointLoad = 10.0f;
     // m/s and rad/s, > 0, at most 1e6: largest correction speed of joints; up to three times that if they are far apart
     // (Docs/Joints.md).

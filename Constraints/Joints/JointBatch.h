@@ -185,9 +185,10 @@ struct JointSolveSettings {
     // Errors are corrected by a soft block, like contact overlaps: see ContactSolveSettings.
     float pushRate;
     RowSoftness<float> softness;
-    float treePushRate;  // 1/s, of locks in trees, which are hard: softness would undo part of the direct solution
     float maxPushSpeed;  // m/s and rad/s
-    bool pushes;         // false: errors are corrected by position iterations (CorrectJoints), and rows are hard
+    // The same of locks in trees, which are hard: softness would undo part of the direct solution.
+    float treePushRate, maxTreePushSpeed;
+    bool pushes;      // false: errors are corrected by position iterations (CorrectJoints), and rows are hard
     float baumgarte;  // 0..1: fraction of an error corrected per position iteration, limited to maxPushSpeed substepDt
     bool continues;   // first velocity iteration of a substep other than the step's first
     bool firstPass;   // first relax iteration of a substep, or first iteration of PullJoints

@@ -3,7 +3,6 @@
 
 #include <Fulcrum/Constraints/Joints/FarJoints.h>
 #include <Fulcrum/Constraints/Joints/JointLanes.h>
-#include <Fulcrum/Constraints/Joints/JointStrain.h>
 
 #include <cmath>
 
@@ -93,6 +92,20 @@ struct JointErrors {
     Vec2<Real> hinge = Vec2<Real>(Real(0.0f), Real(0.0f));
 };
 
+// Lanes in which a row moves the anchors, not only rotations.
+template <int N>
+FULCRUM_FORCE_INLINE WideMask<N> MovesAnchors(const JointRows<N>& row) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    const RowJacobian<Real>& j = row.part.GetJacobian();
+    return (Dot<Real>(j.a.linear, j.a.linear) + Dot<Real>(j.b.linear, j.b.linear) > zero) & (row.about <= zero);
+}
+// Lanes in which a row has an error that is corrected.
+template <int N>
+FULCRUM_FORCE_INLINE WideMask<N> CorrectsError(const JointRows<N>& row) {
+    return (row.error <= row.openAbove) & (row.mostPush > Wide<N>(0.0f));
+}
+
 // Lanes in which a limit or an overstretched spring pulls the anchors together.
 template <int N>
 FULCRUM_FORCE_INLINE WideMask<N> IsPulledAlong(const JointBatch<N>& batch) {
@@ -101,11 +114,7 @@ FULCRUM_FORCE_INLINE WideMask<N> IsPulledAlong(const JointBatch<N>& batch) {
     auto isPulled = zero > zero;
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const RowJacobian<Real>& j = row.part.GetJacobian();
-        const auto moves =
-            (Dot<Real>(j.a.linear, j.a.linear) + Dot<Real>(j.b.linear, j.b.linear) > zero) & (row.about <= zero);
-        isPulled = isPulled | (moves & (row.error <= row.openAbove) & (row.mostPush > zero) &
-                               (row.mostPush < Real(JointRow::kUnlimited)));
+        isPulled = isPulled | (MovesAnchors(row) & CorrectsError(row) & (row.mostPush < Real(JointRow::kUnlimited)));
     }
     return isPulled;
 }
@@ -536,10 +545,6 @@ FULCRUM_FORCE_INLINE WideMask<N> IsPushedFast(const JointBatch<N>& batch) {
     return IsPushedFast(batch, fastest);
 }
 
-// m/s and rad/s, of the locks of trees: a direct solution passes a push on to the whole mechanism, and a contact of it
-// relaxes only a part.
-inline constexpr float kMostTreePush = 2.0f;
-
 // Sets the error correction of the next velocity iterations. Locks that are far apart get a pull (pseudo-velocity)
 // instead.
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -554,7 +559,7 @@ FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>
         softness.massScale = Select(isExact, Real(1.0f), softness.massScale);
         softness.impulseScale = Select(isExact, Real(0.0f), softness.impulseScale);
         rate = Select(isExact, Real(settings.treePushRate), rate);
-        most = Select(isExact, Min(most, Real(kMostTreePush)), most);
+        most = Select(isExact, Real(settings.maxTreePushSpeed), most);
     }
     const auto push = [&](const auto& error) {
         auto bias = error;

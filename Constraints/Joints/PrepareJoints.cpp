@@ -1,4 +1,5 @@
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
+#include <Fulcrum/Constraints/Joints/JointStrain.h>
 #include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 
 #include <algorithm>
@@ -230,10 +231,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     if constexpr (kAngular == AngularLock::Axis) note(angle, errors.hinge);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         const JointRows<N>& row = batch.rows[i];
-        const RowJacobian<Real>& j = row.part.GetJacobian();
-        const Real linear = Dot<Real>(j.a.linear, j.a.linear) + Dot<Real>(j.b.linear, j.b.linear);
-        const auto moves = (linear > zero) & (row.about <= zero),
-                   acts = (row.error <= row.openAbove) & (row.mostPush > zero);
+        const auto moves = MovesAnchors(row), acts = CorrectsError(row);
         const Real push = Select(acts, Abs(row.error) * row.pushRate / Select(acts, row.mostPush, Real(1.0f)), zero);
         distance = Max(distance, Select(moves, push, zero));
         angle = Max(angle, Select(moves, zero, push));

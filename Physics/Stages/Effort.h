@@ -40,6 +40,8 @@ inline float LeastDampingRatio(float frequency, float h) {
 
 // The fraction of a tree's errors that a substep corrects.
 inline constexpr float kTreePush = 0.5f;
+// m/s and rad/s: a direct solution passes a push on to the whole mechanism, and a contact of it relaxes only a part.
+inline constexpr float kMostTreePush = 2.0f;
 
 // The stiffest springs hardly damp slow modes (Docs/Step.md). The springs of islands under load are half as stiff:
 // those of substeps longer by this factor.
@@ -112,6 +114,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     joints.pushRate = push.pushRate;
     joints.softness = push.softness;
     joints.treePushRate = kTreePush / h;
+    joints.maxTreePushSpeed = std::min(s.jointPushSpeed, kMostTreePush);
     // Trees are solved exactly, and corrected by velocities.
     const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte && !group.HasTrees();
     if (!corrects) effort.solver.positionCorrection = PositionCorrection::SoftRelax;

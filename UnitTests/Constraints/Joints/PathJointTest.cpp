@@ -160,7 +160,9 @@ TEST(PathJoint, RowsAreTheDerivativesOfWhatIsOffTheTangentBeyondTheEnds) {
                 EXPECT_NEAR(joint.Coordinate(JointAxis::LinearX, bodies.Pose()),
                             path->LengthAt(end) + static_cast<double>(way), 1e-5);
                 for (const auto& [slot, row] : RowsOf(joint, bodies.Pose()))
-                    if (row.kind == JointRow::Kind::Equal) EXPECT_NEAR(row.error, 0.0f, 1e-5f) << slot;
+                    if (row.kind == JointRow::Kind::Equal) {
+                        EXPECT_NEAR(row.error, 0.0f, 1e-5f) << slot;
+                    }
                 ExpectJacobiansOf(joint, bodies, 4e-3f);
             }
 }
