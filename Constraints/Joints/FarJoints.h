@@ -65,6 +65,20 @@ FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings&
     return Clamp(Real(error * Real(settings.pushRate)), -most, most);
 }
 
+// Marks what is connected to something that does not move, directly or by other joints, as near to it: what the pull
+// holds up there loses the velocity that gravity gives it (BodyState::nearFixed).
+template <class Batch>
+inline void MarkNearFixed(const Batch& batch, BodyState* pseudo) {
+    for (int lane = 0; lane < batch.count; ++lane) {
+        const bool fixedA = batch.fixedA >> lane & 1u, fixedB = batch.fixedB >> lane & 1u;
+        const bool isStatic = ((batch.fixedA & ~batch.kinematicA) | (batch.fixedB & ~batch.kinematicB)) >> lane & 1u;
+        BodyState &a = pseudo[batch.bodyA[lane]], &b = pseudo[batch.bodyB[lane]];
+        if (!isStatic && !(!fixedA && a.nearFixed > 0) && !(!fixedB && b.nearFixed > 0)) continue;
+        if (!fixedA) a.nearFixed = 1;
+        if (!fixedB) b.nearFixed = 1;
+    }
+}
+
 // m/s, rad/s. Faster pushes have their impulses rotated with the joint before they are relaxed. Without that, a
 // velocity that was pushed along one direction and relaxed along another, rotated one keeps the difference: a slider
 // whose bodies were 2 rad apart gained 2 kJ. Applied only in the seconds after a teleport: in joints under load in a

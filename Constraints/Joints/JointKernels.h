@@ -230,9 +230,12 @@ FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
         const auto& angularMass = AngularPart<kAngular>(batch).GetEffectiveMass();
         // S = K - sum of C_k (K_angular^-1 C^T)_k
         Sym3<Real> s = PointInverseMass(batch.massA, batch.massB, armA, armB);
+        // Its rounding errors are relative to this, those along a line to all axes.
+        Vec3<Real> scale(s.xx, s.yy, s.zz);
         if constexpr (kLinear == LinearLock::Line) {
             const auto& frame = batch.line.GetFrame();
             const Sym3<Real> point = s;
+            scale.x() = scale.y() = s.xx + s.yy + s.zz;
             s.xx = Between(frame.axis1, point, frame.axis1);
             s.yy = Between(frame.axis2, point, frame.axis2);
             s.xy = Between(frame.axis1, point, frame.axis2);
@@ -259,8 +262,12 @@ FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
                 s.yz -= c[k].y() * weighted[k].z();
             }
         }
-        if constexpr (kLinear == LinearLock::Point) batch.coupledPoint = SymmetricInverse(s);
-        else batch.coupledLine = SymmetricInverse(Sym2<Real>{s.xx, s.yy, s.xy});
+        // Translation alone: what locks of axes leave of it.
+        const Vec3<Real> masses = batch.massA.mass + batch.massB.mass;
+        const Real least = Min(Min(masses.x(), masses.y()), masses.z());
+        if constexpr (kLinear == LinearLock::Point) batch.coupledPoint = SymmetricInverse(s, scale, least);
+        else
+            batch.coupledLine = SymmetricInverse(Sym2<Real>{s.xx, s.yy, s.xy}, Vec2<Real>(scale.x(), scale.y()), least);
     }
 }
 

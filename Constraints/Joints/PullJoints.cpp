@@ -122,6 +122,7 @@ template <int N>
 void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
     if (settings.firstPass)
         for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].pulled = Wide<N>(0.0f);
+    MarkNearFixed(batch, pseudo);
     ChangeVelocities<N>(batch, pseudo, [&](auto& a, auto& b) {
         batch.follows = Follows<Wide<N>>(batch.follows, a, b, settings);
         WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {

@@ -278,6 +278,7 @@ void Correct(BallBatch<N>& batch, const SolverBodies& bodies, const JointSolveSe
 template <bool kRound, int N>
 void Pull(BallBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
     using Real = Wide<N>;
+    MarkNearFixed(batch, pseudo);
     ChangeVelocities<N>(batch, pseudo, [&](Twist<Real>& a, Twist<Real>& b) {
         batch.follows = Follows<Real>(batch.follows, a, b, settings);
         if (batch.far) {

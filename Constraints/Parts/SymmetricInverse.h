@@ -52,11 +52,12 @@ struct Sym2 {
 namespace detail {
 
 // 1 / pivot. scale: the diagonal, plus the magnitudes subtracted from it during elimination; its rounding error is a
-// few times 6e-8 of that.
+// few times 6e-8 of that. The exact pivot is at least `least`, >= 0.
 template <class Real>
-inline Real InversePivot(Real pivot, Real scale) {
-    const MaskOf<Real> stands = pivot > scale * Real(1e-6f);
-    return Select(stands, Real(1.0f) / Select(stands, pivot, Real(1.0f)), Real(0.0f));
+inline Real InversePivot(const Real& pivot, const Real& scale, const Real& least) {
+    const Real known = Max(pivot, least);
+    const MaskOf<Real> stands = (known > scale * Real(1e-6f)) | (least > Real(0.0f));
+    return Select(stands, Real(1.0f) / Select(stands, known, Real(1.0f)), Real(0.0f));
 }
 
 }  // namespace detail
@@ -64,15 +65,16 @@ inline Real InversePivot(Real pivot, Real scale) {
 // k >= 0.
 template <class Real>
 inline Real SymmetricInverse(Real k) {
-    return detail::InversePivot(k, k);
+    return detail::InversePivot(k, k, Real(0.0f));
 }
 
-// Positive semi-definite.
+// Of a positive semi-definite matrix that was computed as a difference. scale: its diagonal before the subtraction,
+// whose rounding errors must not count as mobility. least: a lower bound of the eigenvalues, 0 if none is known.
 template <class Real>
-inline Sym2<Real> SymmetricInverse(const Sym2<Real>& k) {
-    const Real dx = detail::InversePivot(k.xx, k.xx);
+inline Sym2<Real> SymmetricInverse(const Sym2<Real>& k, const Vec2<Real>& scale, const Real& least) {
+    const Real dx = detail::InversePivot(k.xx, scale.x(), least);
     const Real l = k.xy * dx;
-    const Real dy = detail::InversePivot(k.yy - k.xy * l, k.yy);
+    const Real dy = detail::InversePivot(k.yy - k.xy * l, scale.y() + l * l * scale.x(), least);
     Sym2<Real> inverse;
     inverse.yy = dy;
     inverse.xy = -(l * dy);
@@ -80,16 +82,17 @@ inline Sym2<Real> SymmetricInverse(const Sym2<Real>& k) {
     return inverse;
 }
 
-// Positive semi-definite.
 template <class Real>
-inline Sym3<Real> SymmetricInverse(const Sym3<Real>& k) {
-    const Real dx = detail::InversePivot(k.xx, k.xx);
+inline Sym3<Real> SymmetricInverse(const Sym3<Real>& k, const Vec3<Real>& scale, const Real& least) {
+    const Real dx = detail::InversePivot(k.xx, scale.x(), least);
     const Real lxy = k.xy * dx, lxz = k.xz * dx;
     const Real yz = k.yz - k.xy * lxz;
-    const Real dy = detail::InversePivot(k.yy - k.xy * lxy, k.yy);
+    // The factors amplify rounding errors, lyz especially if the first two rows are nearly equal.
+    const Real y = scale.y() + lxy * lxy * scale.x();
+    const Real dy = detail::InversePivot(k.yy - k.xy * lxy, y, least);
     const Real lyz = yz * dy;
-    // yz has rounding errors relative to kyy and kzz, which lyz amplifies if the first two rows are nearly equal.
-    const Real dz = detail::InversePivot(k.zz - k.xz * lxz - yz * lyz, k.zz + lyz * lyz * k.yy);
+    const Real z = scale.z() + lxz * lxz * scale.x() + lyz * lyz * y;
+    const Real dz = detail::InversePivot(k.zz - k.xz * lxz - yz * lyz, z, least);
     const Real corner = lxy * lyz - lxz;  // of L^-1
     Sym3<Real> inverse;
     inverse.zz = dz;
@@ -99,6 +102,16 @@ inline Sym3<Real> SymmetricInverse(const Sym3<Real>& k) {
     inverse.xy = -(lxy * dy + lyz * corner * dz);
     inverse.xx = dx + lxy * lxy * dy + corner * corner * dz;
     return inverse;
+}
+
+// Positive semi-definite.
+template <class Real>
+inline Sym2<Real> SymmetricInverse(const Sym2<Real>& k) {
+    return SymmetricInverse(k, Vec2<Real>(k.xx, k.yy), Real(0.0f));
+}
+template <class Real>
+inline Sym3<Real> SymmetricInverse(const Sym3<Real>& k) {
+    return SymmetricInverse(k, Vec3<Real>(k.xx, k.yy, k.zz), Real(0.0f));
 }
 
 }  // namespace fulcrum

@@ -160,4 +160,28 @@ void RotateTogether(FreeTurn* const (&turns)[kTurnsTogether], int count, float d
     }
 }
 
+Vector3 VelocityAboutTwoAxes(const BodyDynamics& body, const Quaternion& before, const Quaternion& after,
+                             const Vector3& angularVelocity) {
+    const Vector3 momentum = AngularMomentum(body, before, angularVelocity);
+    const Vector3 free = InverseOfFreeAxes(body, AxesOf(body, after)) * momentum;
+    // Twice the energies.
+    const float wanted = Dot(momentum, angularVelocity), reached = Dot(momentum, free);
+    const float squared = wanted / reached;
+    return squared > 0 && std::isfinite(squared) ? Vector3(free * std::sqrt(squared)) : angularVelocity;
+}
+
+void RotateAboutTwoAxes(FreeTurn& turn, float dt) {
+    const BodyDynamics& d = *turn.body;
+    const int count = RotationSubsteps(d, Length(turn.angularVelocity) * std::fabs(dt));
+    const float h = dt / static_cast<float>(count);
+    for (int i = 0; i < count; ++i) {
+        Vector3& w = turn.angularVelocity;
+        const Quaternion start = turn.rotation;
+        const Quaternion middle = RotationFromVector(Vector3(w * (0.5f * h))) * start;
+        const Vector3 mean = VelocityAboutTwoAxes(d, start, middle, w);
+        turn.rotation = Normalized(RotationFromVector(Vector3(mean * h)) * start);
+        w = VelocityAboutTwoAxes(d, start, turn.rotation, w);
+    }
+}
+
 }  // namespace fulcrum

@@ -23,4 +23,12 @@ void RotateFreely(FreeTurn& turn, float dt);
 inline constexpr int kTurnsTogether = 4;
 void RotateTogether(FreeTurn* const (&turns)[kTurnsTogether], int count, float dt);
 
+// Of a body that rotates about two world axes only: its angular velocity, rad/s, after its rotation has changed. A lock
+// exerts torque about its own axis alone, which does no work and leaves the angular momentum about the other two, but
+// not their inertia. Momentum keeps its direction; its magnitude follows from the energy, which is kept exactly.
+Vector3 VelocityAboutTwoAxes(const BodyDynamics& body, const Quaternion& before, const Quaternion& after,
+                             const Vector3& angularVelocity);
+// Rotates such a body for dt seconds, without torque.
+void RotateAboutTwoAxes(FreeTurn& turn, float dt);
+
 }  // namespace fulcrum

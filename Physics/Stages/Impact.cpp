@@ -196,7 +196,9 @@ Vector3 GainUntilEnd(const ImpactStores& stores, uint32_t body, const Vector3& v
 // the rotation by a constant rate up to `then`.
 Vector3 TurnedFreely(const BodyDynamics& d, const Quaternion& rotation, const Vector3& w, float seconds,
                      const Quaternion& then) {
-    if (d.motion != MotionType::Dynamic || !d.HasGyroscopicTorqueAt(w)) return w;
+    if (d.motion != MotionType::Dynamic) return w;
+    if (d.RotatesAboutTwoAxes()) return VelocityAboutTwoAxes(d, rotation, then, w);
+    if (!d.HasGyroscopicTorqueAt(w)) return w;
     const auto energyOf = [&](const Vector3& inBody) {
         return TwiceRotationalEnergy<float>(d, InverseRotate(d.PrincipalAxes(), inBody));
     };

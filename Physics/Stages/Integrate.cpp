@@ -5,6 +5,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Stages/BodyLimits.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
+#include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 
 #include <algorithm>
@@ -196,6 +197,18 @@ FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)
     mass.Write(count, feels);
 }
 
+// The same for bodies that rotate about two world axes. before, after: rotations since the start of the step, rad.
+void TurnAboutTwoAxes(BodyStore& bodies, uint32_t body, const Vector3& before, const Vector3& after) {
+    const BodyDynamics& d = bodies.dynamics[body];
+    const Quaternion start = bodies.RotationOf(body), end = RotationFromVector(after) * start;
+    const Vector3 w = bodies.AngularVelocityOf(body);
+    const Vector3 turned = VelocityAboutTwoAxes(d, RotationFromVector(before) * start, end, w);
+    float* unconstrained = bodies.unconstrained[body].row;
+    for (int k = 0; k < 3; ++k) unconstrained[BodyState::kAngular + k] += turned[k] - w[k];
+    bodies.SetVelocity(body, bodies.LinearVelocityOf(body), turned);
+    bodies.masses[body] = bodies.MassAlong(body, AxesOf(d, end));
+}
+
 // Validates the solved velocity of a body before it moves. If not finite, it must not reach the pose either, which
 // constraints of neighbors read.
 void LimitSolved(BodyStore& bodies, uint32_t body, WorkerFindings& findings) {
@@ -282,12 +295,14 @@ void IntegratePose(const MovedBodies& moved, uint32_t body, float h, bool isLast
     if (pseudo) AddPull(bodies, body, pseudo[body], motion);
     const bool isJointed = moved.joints.HasAny(body);
     Rows<float> displacement({body}, [&](uint32_t) { return s.PoseRow(); });
-    const Vector3 turn = Displace(displacement, motion, isJointed, h, 1);
+    const Vector3 turnBefore = displacement.Second(), turn = Displace(displacement, motion, isJointed, h, 1);
     const float* a = bodies.poses[body].acceleration;
     if (isLast && Flies<float>(bodies, {body}, bodies.LinearVelocityOf(body)))
         CorrectFlight<float>(bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
+    if (!isJointed) return;
+    if (d.RotatesAboutTwoAxes()) return TurnAboutTwoAxes(bodies, body, turnBefore, turn);
     Vector3 w = bodies.AngularVelocityOf(body);
-    if (!isJointed || !d.HasGyroscopicTorqueAt(w)) return;
+    if (!d.HasGyroscopicTorqueAt(w)) return;
     TurnInertia(bodies, {body}, 1, true, turn, w, h);
     bodies.SetVelocity(body, bodies.LinearVelocityOf(body), w);
 }

@@ -52,6 +52,10 @@ bool FlyFreely(BodyStore& bodies, Ending& ending, const StepContext& step, Worke
         else ending.turn.torque = torque;
     }
     if (feelsTop) return true;
+    if (d.RotatesAboutTwoAxes()) {
+        RotateAboutTwoAxes(ending.turn, step.dt);
+        return false;
+    }
     ending.turn.rotation = Normalized(RotationFromVector(Vector3(w * step.dt)) * ending.turn.rotation);
     return false;
 }
@@ -94,8 +98,10 @@ void MoveSolved(BodyStore& bodies, const JointStore& joints, Ending& ending, flo
     if (d.lockedAxes != LockedAxes::None) d.Lock(ending.displacement, turn);
     const Quaternion before = rotation;
     rotation = Normalized(RotationFromVector(turn) * rotation);
-    // For jointed bodies every substep has done that.
-    if (!d.HasGyroscopicTorqueAt(w) || joints.HasAny(body)) return;
+    // For jointed bodies every substep has done what follows.
+    if (joints.HasAny(body)) return;
+    if (d.RotatesAboutTwoAxes()) w = VelocityAboutTwoAxes(d, before, rotation, w);
+    if (!d.HasGyroscopicTorqueAt(w)) return;
     w = CarriedAlong(d, before, rotation, w);
     w = AddGyroscopicTorque<float>(Vector3(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]),
                                    AxesOf(d, rotation), w, dt);

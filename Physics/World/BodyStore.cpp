@@ -118,14 +118,11 @@ void BodyStore::MoveCenter(uint32_t index, const Vector3& displacement, const Qu
     Write(poses[index], CenterOf(index) + step, rotation);
 }
 
-namespace {
-
-// World inverse inertia of a body with locked rotation axes: the inverse of the block of the free axes.
 SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
     Vector3 principal;
     for (int k = 0; k < 3; ++k) principal[k] = d.inverseInertia[k] > 0 ? 1.0f / d.inverseInertia[k] : 0.0f;
     const SymmetricMatrix3 w = RotatedDiagonal(axes, principal);
-    const unsigned locked = static_cast<unsigned>(d.lockedAxes) >> 3;
+    const unsigned locked = d.LockedRotations();
     const bool x = !(locked & 1), y = !(locked & 2), z = !(locked & 4);
     SymmetricMatrix3 i;
     const auto pair = [](float a, float b, float c, float& ia, float& ib, float& ic) {
@@ -146,14 +143,12 @@ SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& d, const Matrix3& axes) {
     return i;
 }
 
-}  // namespace
-
 BodyMass BodyStore::MassAlong(uint32_t index, const Matrix3& axes) const {
     const BodyDynamics& d = dynamics[index];
     BodyMass m;
     if (d.frozen) return m;
     m.inverseMass = d.inverseMass;
-    const bool turns = d.gyroscopic && !d.spherical && !d.LocksRotation() && d.motion == MotionType::Dynamic;
+    const bool turns = (d.HasGyroscopicTorque() || d.RotatesAboutTwoAxes()) && d.motion == MotionType::Dynamic;
     m.flags = static_cast<float>(d.LockedTranslations() * BodyMass::kLockedX + (turns ? BodyMass::kTurns : 0));
     const Vector3 inverse(d.inverseInertia[0], d.inverseInertia[1], d.inverseInertia[2]);
     SymmetricMatrix3 i;

@@ -70,13 +70,19 @@ struct alignas(64) BodyDynamics {
     }
     static constexpr float kLeastGyroscopicSpeed = 0.1f;  // rad/s
     bool HasGyroscopicTorque() const { return gyroscopic && !spherical && !LocksRotation(); }
+    // Whether it rotates about two world axes, in which its inertia changes as it does (FreeRotation.h).
+    bool RotatesAboutTwoAxes() const {
+        const unsigned locked = LockedRotations();
+        return gyroscopic && !spherical && (locked == 1 || locked == 2 || locked == 4);
+    }
     unsigned LockedTranslations() const { return static_cast<unsigned>(lockedAxes) & 7u; }  // bits: x, y, z
     Vector3 AlongFreeTranslations(Vector3 v) const {
         Vector3 none = Vector3::Zero();
         Lock(v, none);
         return v;
     }
-    bool LocksRotation() const { return (static_cast<unsigned>(lockedAxes) & 56u) != 0; }
+    unsigned LockedRotations() const { return static_cast<unsigned>(lockedAxes) >> 3; }  // bits: x, y, z
+    bool LocksRotation() const { return LockedRotations() != 0; }
     Quaternion PrincipalAxes() const {
         return {principalAxes[0], principalAxes[1], principalAxes[2], principalAxes[3]};
     }
@@ -109,6 +115,9 @@ Real TwiceRotationalEnergy(const BodyDynamics& body, const Vector3& w) {
 // Sets the inverses of mass, kg, and principal moments of inertia, kg m2; principalAxes: rotation of the principal
 // frame in the center frame.
 void SetMass(BodyDynamics& body, const Quaternion& principalAxes, float mass, const Vector3& inertia);
+// World inverse inertia of a body that locks rotations: the inverse of the block of the free axes. axes: the principal
+// ones in world space.
+SymmetricMatrix3 InverseOfFreeAxes(const BodyDynamics& body, const Matrix3& axes);
 // The principal axes in world space.
 inline Matrix3 AxesOf(const BodyDynamics& body, const Quaternion& rotation) {
     return ToMatrix(rotation * body.PrincipalAxes());

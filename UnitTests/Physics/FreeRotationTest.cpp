@@ -45,6 +45,37 @@ TEST(FreeRotation, HardlyChangesTheEnergy) {
     EXPECT_LT(worst, 1e-5);
 }
 
+// A lock exerts torque about its own axis alone: it does no work and leaves the other components of L.
+TEST(FreeRotation, AboutTwoAxesKeepsEnergyAndMomentum) {
+    for (const LockedAxes lock : {LockedAxes::RotationX, LockedAxes::RotationY, LockedAxes::RotationZ}) {
+        TestWorld world(NoGravity());
+        BodySettings settings = SpinningBox();
+        settings.rotation = Normalized(Quaternion{0.3f, 0.2f, -0.5f, 0.7f});
+        settings.angularVelocity = {3, 4, 5};
+        settings.lockedAxes = lock;
+        for (unsigned k = 0; k < 3; ++k)
+            if (static_cast<unsigned>(lock) >> (3 + k) & 1) settings.angularVelocity[k] = 0;
+        const BodyId box = world.Add(settings);
+        const auto momentumOf = [&] {
+            Vector3 along = world.Bodies().GetAngularMomentum(box);
+            for (unsigned k = 0; k < 3; ++k)
+                if (static_cast<unsigned>(lock) >> (3 + k) & 1) along[k] = 0;
+            return along;
+        };
+        const double energy = world.Bodies().GetKineticEnergy(box);
+        const Vector3 momentum = momentumOf();
+        double worst = 0, worstMomentum = 0;
+        for (int i = 0; i < 600; ++i) {
+            world.Step();
+            worst = std::max(worst, std::fabs(world.Bodies().GetKineticEnergy(box) / energy - 1));
+            worstMomentum =
+                std::max(worstMomentum, double(Length(Vector3(momentumOf() - momentum)) / Length(momentum)));
+        }
+        EXPECT_LT(worst, 1e-4) << static_cast<int>(lock);
+        EXPECT_LT(worstMomentum, 0.01) << static_cast<int>(lock);
+    }
+}
+
 TEST(FreeRotation, HardlyChangesTheEnergyOfWhatSpinsAsFastAsADrill) {
     // At 1000 rad/s a step of 1/60 s is 16.7 rad: 132 substeps of a tenth, where at most 64 were made, and the energy
     // rose by 1.7 %.

@@ -1,0 +1,54 @@
+// Mechanisms of bodies with locked axes. What rotation leaves of the mobility at an anchor is a difference, of which
+// nothing but rounding errors may remain where the axes are locked: these once counted as mobility, and weightless
+// mechanisms at rest exploded.
+#include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace fulcrum::testing {
+namespace {
+
+enum class Kind : uint8_t { Fixed, Hinge, Slider };
+
+// m/s, of any of three bodies in 5 s. They are created at rest, and nothing acts on them.
+float FastestOf(Kind kind, uint32_t seed) {
+    SystemSettings settings = Weightless();
+    settings.layerCollides[1] &= ~2u;
+    TestWorld world(settings);
+    RandomPoses random(seed);
+    std::vector<BodyId> ids;
+    for (int i = 0; i < 3; ++i) {
+        const Vector3 half = random.InBox(0.125f) + Vector3(0.375f, 0.375f, 0.375f);
+        const float x = random.Between(-1, 1), z = random.Between(-1, 1);
+        ids.push_back(world.Add({.shape = BoxOf(half.x(), half.y(), half.z()),
+                                 .position = Position(static_cast<double>(x), 1.4 * i, static_cast<double>(z)),
+                                 .rotation = random.Rotation(),
+                                 .lockedAxes = static_cast<LockedAxes>(random.Below(63)),
+                                 .layer = 1}));
+    }
+    for (size_t i = 0; i + 1 < ids.size(); ++i) {
+        const JointSettings between = Between(
+            ids[i], ids[i + 1], (world.PositionOf(ids[i]) + world.PositionOf(ids[i + 1])) * 0.5, random.Direction());
+        if (kind == Kind::Fixed) Join(world, Of<FixedJointSettings>(between));
+        if (kind == Kind::Hinge) Join(world, Of<HingeJointSettings>(between));
+        if (kind == Kind::Slider) Join(world, Of<SliderJointSettings>(between));
+    }
+    float fastest = 0;
+    for (int i = 0; i < 300; ++i) {
+        world.Step();
+        for (const BodyId id : ids) fastest = std::max(fastest, Length(world.VelocityOf(id)));
+    }
+    return fastest;
+}
+
+TEST(GuidedMechanisms, StayAtRest) {
+    for (const Kind kind : {Kind::Fixed, Kind::Hinge, Kind::Slider})
+        for (uint32_t seed = 1; seed <= 200; ++seed)
+            // Rounding of anchors is corrected, where little mobility is left by much motion.
+            EXPECT_LT(FastestOf(kind, seed), 0.05f) << static_cast<int>(kind) << ", seed " << seed;
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
