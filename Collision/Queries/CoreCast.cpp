@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kMaxIterations = 64;
 constexpr int kMaxTurningIterations = 200;
-// Axes that rotate with a shape are tried where all of the other is nearer to its center than this part of its radius.
-constexpr double kBesideTheMiddle = 0.25;
+// Axes that rotate with a shape are tried if it is larger than the other by this factor.
+constexpr float kFarLarger = 20;
 
 using Vec4 = std::array<double, 4>;
 
@@ -169,9 +169,8 @@ namespace {
 // minimum of linear functions, hence concave in s. So if the bound holds at the end of an interval and the shapes are
 // apart at its beginning, it holds in between.
 //
-// Along an axis at rest the far ends of a large shape that rotates soon come as far as a small one that is beside its
-// middle. An axis that rotates with the large shape lasts longer there, by the ratio of their distances from its
-// center.
+// Along an axis at rest the far ends of a large shape that rotates soon come as far as a small one beside it, wherever
+// that is. An axis that rotates with the large shape is only limited by how the small one moves relative to it.
 class AxisAdvance {
 public:
     // `gap`: current separation along the axis minus the target distance, > 0. `axis`, unit, and `axisTurn`, of the
@@ -271,9 +270,8 @@ private:
     double acceleration_ = 0;
 };
 
-// Whether all of the other shape is beside the middle of one, `distance` m between their centers.
-bool IsBesideTheMiddle(const ConvexShape& shape, const ConvexShape& other, double distance) {
-    return distance + double{other.OuterRadius()} < kBesideTheMiddle * double{shape.OuterRadius()};
+bool IsFarLarger(const ConvexShape& shape, const ConvexShape& other) {
+    return shape.OuterRadius() > kFarLarger * other.OuterRadius();
 }
 
 // A proven step along an axis of the time `now`, as a fraction of the motion.
@@ -281,13 +279,11 @@ double ProvenStep(const ConvexShape& a, const ConvexShape& b, const CoreMotion& 
                   const Vector3& axis, double gap, double remaining) {
     const double step = AxisAdvance(a, b, motion, now, axis, gap).Step(remaining);
     if (step >= remaining) return step;
-    const Position between = motion.PositionAt(now.fraction);
-    const double distance = std::sqrt(Dot<double>(between, between));
     const auto stepAlong = [&](const Vector3& turn) {
         return turn.isZero(0) ? 0.0 : AxisAdvance(a, b, motion, now, axis, gap, turn).Step(remaining);
     };
-    if (IsBesideTheMiddle(b, a, distance)) return std::max(step, stepAlong(motion.turn));
-    if (IsBesideTheMiddle(a, b, distance)) return std::max(step, stepAlong(motion.turnOfA));
+    if (IsFarLarger(b, a)) return std::max(step, stepAlong(motion.turn));
+    if (IsFarLarger(a, b)) return std::max(step, stepAlong(motion.turnOfA));
     return step;
 }
 
