@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxIterations = 64;
 constexpr int kMaxTurningIterations = 200;
 // Axes that rotate with a shape are tried if it is larger than the other by this factor.
-constexpr float kFarLarger = 20;
+constexpr float kFarLarger = 50;
 
 using Vec4 = std::array<double, 4>;
 
