@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kMaxIterations = 64;
 constexpr int kMaxTurningIterations = 200;
+// Axes that rotate with a shape are tried if it is larger than the other by this factor.
+constexpr float kFarLarger = 50;
 
 using Vec4 = std::array<double, 4>;
 
@@ -158,29 +160,43 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
 
 namespace {
 
-// Lower bound of the time for which two rotating shapes stay farther apart than the target distance along an axis n.
-// For each shape
-//     n . x(t + s) = n . (c + r) + s (n . d + r . (n x w)) + at most s^2 / 2 |w|^2 R,
-// r from its center c, R the radius of its core, w the turn, d the displacement: the linear part is extreme for the
-// shape's support along n + s (n x w). The difference of B's and A's extremes is a minimum of linear functions, hence
-// concave in s. So if the bound holds at the end of an interval and the shapes are apart at its beginning, it holds in
-// between.
+// Lower bound of the time for which two rotating shapes stay farther apart than the target distance along an axis n,
+// which is at rest or rotates by u. With r from the center c of a shape, R the radius of its core, w its turn, d the
+// displacement:
+//     n . x(t + s) = n . (c + r) + s (n . d + (u x n) . c + r . (n x (w - u))) + at most the bending,
+// s^2 / 2 (|w| + |u|)^2 R, or nothing if w = u, for r, and s^2 (|u|^2 |c| / 2 + |u| |d|) + s^3 |u|^2 |d| / 6 for c. The
+// linear part is extreme for the shape's support along n + s (n x (w - u)). The difference of B's and A's extremes is a
+// minimum of linear functions, hence concave in s. So if the bound holds at the end of an interval and the shapes are
+// apart at its beginning, it holds in between.
+//
+// Along an axis at rest the far ends of a large shape that rotates soon come as far as a small one beside it, wherever
+// that is. An axis that rotates with the large shape is only limited by how the small one moves relative to it.
 class AxisAdvance {
 public:
-    // `gap`: current separation along the axis minus the target distance, > 0. `axis`, unit: in the motion's axes.
+    // `gap`: current separation along the axis minus the target distance, > 0. `axis`, unit, and `axisTurn`, of the
+    // axis: in the motion's axes.
     AxisAdvance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CorePoses& now,
-                const Vector3& axis, double gap)
-        : a_(a, 1, axis, motion.turnOfA, now.rotationOfA),
-          b_(b, -1, axis, motion.turn, now.rotation),
+                const Vector3& axis, double gap, const Vector3& axisTurn = Vector3::Zero())
+        : a_(a, 1, axis, motion.turnOfA, axisTurn, now.rotationOfA),
+          b_(b, -1, axis, motion.turn, axisTurn, now.rotation),
           gap_(gap),
           approach_(-Dot<double>(axis.cast<double>(), motion.displacement.cast<double>())),
-          bending_(a_.Bending() + b_.Bending()) {}
+          bending_(a_.Bending() + b_.Bending()) {
+        if (axisTurn.isZero(0)) return;
+        const Position center = motion.PositionAt(now.fraction);
+        const double turn = double{Length(axisTurn)}, moved = double{Length(motion.displacement)},
+                     distance = std::sqrt(Dot<double>(center, center));
+        approach_ -= Dot<double>(Cross<float>(axisTurn, axis).cast<double>(), center);
+        bending_ += turn * (0.5 * turn * distance + moved);
+        twist_ = turn * turn * moved / 6;
+        acceleration_ = bending_ + twist_;
+    }
 
     // Proven time step, as a fraction of the motion; at most `remaining`.
     double Step(double remaining) const {
         const double speed = approach_ + a_.Speed() + b_.Speed();
-        if (speed * remaining <= gap_) return remaining;
-        const double sure = gap_ / speed;
+        if ((speed + acceleration_ * remaining) * remaining <= gap_) return remaining;
+        const double sure = 2 * gap_ / (speed + std::sqrt(speed * speed + 4 * acceleration_ * gap_));
         if (!(sure > 0)) return 0;  // overflow: the search ends early
         double low = sure, high = remaining;
         if (Margin(high) > 0) return high;
@@ -202,20 +218,20 @@ private:
     // The extent of a shape rotating about its center along the axis, or against it with sign -1.
     class Turning {
     public:
-        Turning(const ConvexShape& shape, float sign, const Vector3& axis, const Vector3& turn,
+        Turning(const ConvexShape& shape, float sign, const Vector3& axis, const Vector3& turn, const Vector3& axisTurn,
                 const Quaternion& rotation)
             : shape_(shape),
               sign_(sign),
               axis_(axis),
-              turned_(Cross<float>(axis, turn)),
+              turned_(Cross<float>(axis, Vector3(turn - axisTurn))),
               rotation_(ToMatrix(rotation)),
               radius_(shape.OuterRadius() - std::min(shape.ConvexRadius(), shape.OuterRadius())),
-              bending_(0.5 * double{LengthSquared(turn)} * radius_),
-              isTurning_(!turn.isZero(0)),
+              isTurning_(!(turn - axisTurn).isZero(0)),
+              bending_(isTurning_ ? BendingOf(turn, axisTurn) * radius_ : 0),
               start_(isTurning_ ? Extreme(0) : 0) {}
 
         bool IsTurning() const { return isTurning_; }
-        double Speed() const { return double{Length(turned_)} * radius_; }  // upper bound at the start; m per motion
+        double Speed() const { return double{Length(turned_)} * radius_; }  // upper bound; m per motion
         double Bending() const { return bending_; }
         // Along the axis, m: of the points that are extreme in the linear part of their motion.
         double Extreme(double step) const {
@@ -226,25 +242,50 @@ private:
         double Start() const { return start_; }
 
     private:
+        static double BendingOf(const Vector3& turn, const Vector3& axisTurn) {
+            if (axisTurn.isZero(0)) return 0.5 * double{LengthSquared(turn)};
+            const double both = double{Length(turn)} + double{Length(axisTurn)};
+            return 0.5 * both * both;
+        }
+
         const ConvexShape& shape_;
         float sign_;
         Vector3 axis_, turned_;
         Matrix3 rotation_;
-        double radius_, bending_;
+        double radius_;
         bool isTurning_;
-        double start_;
+        double bending_, start_;
     };
 
     double Margin(double step) const {
         double margin = gap_ - approach_ * step;
         if (b_.IsTurning()) margin += b_.Extreme(step) - b_.Start();
         if (a_.IsTurning()) margin -= a_.Extreme(step) - a_.Start();
-        return margin - bending_ * step * step;
+        return margin - (bending_ + twist_ * step) * step * step;
     }
 
     Turning a_, b_;
-    double gap_, approach_, bending_;
+    double gap_, approach_, bending_, twist_ = 0;
+    // What the speed may grow by, m: none along an axis at rest, where the speeds of the shapes are those of all times.
+    double acceleration_ = 0;
 };
+
+bool IsFarLarger(const ConvexShape& shape, const ConvexShape& other) {
+    return shape.OuterRadius() > kFarLarger * other.OuterRadius();
+}
+
+// A proven step along an axis of the time `now`, as a fraction of the motion.
+double ProvenStep(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CorePoses& now,
+                  const Vector3& axis, double gap, double remaining) {
+    const double step = AxisAdvance(a, b, motion, now, axis, gap).Step(remaining);
+    if (step >= remaining) return step;
+    const auto stepAlong = [&](const Vector3& turn) {
+        return turn.isZero(0) ? 0.0 : AxisAdvance(a, b, motion, now, axis, gap, turn).Step(remaining);
+    };
+    if (IsFarLarger(b, a)) return std::max(step, stepAlong(motion.turn));
+    if (IsFarLarger(a, b)) return std::max(step, stepAlong(motion.turnOfA));
+    return step;
+}
 
 // Conservative advancement until `separate` (GJK, or a plane) finds the shapes no farther apart than the target
 // distance. separate(const CorePoses&, guess) returns {apart by more than the target along a unit axis, axis, point of
@@ -256,11 +297,11 @@ struct Separated {
     bool coresOverlap;
 };
 
-// `from`, `to`: the interval of the motion outside of which they do not touch.
+// `from`, `to`: the interval of the motion outside of which they do not touch. isHalfSpace: A is one, not a point.
 template <class Separate>
 CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion,
                        const CoreCastLimits& limits, double tolerance, const Separate& separate, double from = 0,
-                       double to = 1) {
+                       double to = 1, bool isHalfSpace = false) {
     using Outcome = CoreCastResult::Status;
     const bool turnsA = !motion.turnOfA.isZero(0);
     double fraction = from;
@@ -281,8 +322,9 @@ CoreCastResult Advance(const ConvexShape& a, const ConvexShape& b, const CoreMot
         // Not shortened to maxFraction, so that the hit is bit-identical for every maxFraction.
         const double remaining = to - fraction;
         // Advances to half the tolerance from touching, so that the search ends there.
-        const AxisAdvance advance(a, b, motion, poses, now.axis, now.gap - 0.5 * tolerance);
-        const double step = advance.Step(remaining);
+        const double gap = now.gap - 0.5 * tolerance;
+        const double step = isHalfSpace ? AxisAdvance(a, b, motion, poses, now.axis, gap).Step(remaining)
+                                        : ProvenStep(a, b, motion, poses, now.axis, gap, remaining);
         if (step >= remaining) return {};
         fraction += step;
         if (fraction > limits.maxFraction) return {};
@@ -365,7 +407,7 @@ CoreCastResult CastToPlane(const Vector3& normal, double offset, const ConvexSha
         return {height - target, normal, Vector3((lowest - n * height).cast<float>()), false};
     };
     const double tolerance = std::max(double{limits.tolerance}, 1e-6 * double{b.OuterRadius()} + 1e-9);
-    if (motion.IsTurning()) return Advance(PointCore{}, b, motion, limits, tolerance, separate);
+    if (motion.IsTurning()) return Advance(PointCore{}, b, motion, limits, tolerance, separate, 0, 1, true);
     const Separated start = separate(motion.At(0), normal);
     if (start.gap <= 0) return HitAt(Outcome::AtStart, 0, n, start.onA);
     const double speed = -Dot<double>(n, motion.displacement.cast<double>());

@@ -121,6 +121,7 @@ private:
                 Swept(place).CountHit(hit.time);
                 isLast |= Swept(place).IsCrowdedWithHits();
             }
+        if (hit.pointCount == 0 && !lostPartner) isLast |= ++Swept(places[0]).undecided >= Sweep::kMostUndecided;
         if (hit.isBlocked || !impact.isFinite || (isLast && isUndecided)) {
             // With its arriving velocity: an impulse applied to only one of the two would create energy. One that waits
             // already is not cast again: the same hit would be found in every round.

@@ -47,6 +47,10 @@ struct Sweep {
     }
     bool IsCrowdedWithHits() const { return crowdedHits >= kMostCrowdedHits; }
 
+    // Likewise where casts end undecided this many times in a step, each after all the effort that a cast may take.
+    static constexpr int kMostUndecided = 8;
+    int undecided = 0;
+
     float PartAt(float time) const { return from < 1 ? (time - from) / (1 - from) : 0.0f; }
     Position PositionAt(float time) const {
         return start.position + OnGrid((displacement * PartAt(time)).cast<double>());

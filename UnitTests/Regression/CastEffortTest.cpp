@@ -1,6 +1,6 @@
 // What a cast of continuous collision finds, and what it costs, follows from what is near the body: not from how far
-// the body turns, from how many triangles it overlaps as the step begins, or from the order in which trees find what is
-// in its way. Each of these took seconds a step, or other bits after a restored snapshot.
+// the body turns or how large it is, from how many triangles it overlaps as the step begins, or from the order in which
+// trees find what is in its way. Each of these took seconds a step, or other bits after a restored snapshot.
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Physics/Snapshots/SnapshotTesting.h>
@@ -62,6 +62,36 @@ TEST(CastEffort, IsBoundedHoweverFastABodyTurnsAmongTriangles) {
         for (const float spin : {0.0f, 10.0f, 100.0f, 1e3f, 3e4f, 1e6f})
             EXPECT_LT(SlowestStep(shape, spin), (kIsSanitized ? 20 : 1) * 0.6)
                 << ShapeTypeName(shape->Type()) << " at " << spin << " rad/s";
+}
+
+// Whose far ends move by kilometers in a step, while its middle lies on a mesh and touches it in all steps: all
+// iterations were spent at each triangle, and 64 rounds on the same undecided cast.
+TEST(CastEffort, IsBoundedHoweverLargeABodyTurnsOnAMesh) {
+    const ShapePtr waves = WavesOf(8, 4);
+    for (uint32_t seed = 0; seed < static_cast<uint32_t>(Cases(40)); ++seed) {
+        RandomPoses random(seed);
+        const float size = std::pow(10.0f, random.Between(0, 5)), thin = std::pow(10.0f, random.Between(-2, 2));
+        const ShapePtr large = seed % 3 == 0   ? BoxOf(size, thin, 0.7f * size)
+                               : seed % 3 == 1 ? Cylinder::Create(size, thin).Value()
+                                               : CapsuleOf(size, thin);
+        TestWorld world;
+        world.Add({.shape = waves, .motion = MotionType::Static});
+        world.Add({.shape = BoxOf(10, 0.5f, 10), .motion = MotionType::Static, .position = {0, -0.5, 0}});
+        const Vector3 at = random.InBox(random.Between(1, 30));
+        world.Add({.shape = CompoundOf({{.shape = large, .position = {0.3f, 0.2f, 0}}, {.shape = CubeOf(0.5f)}}),
+                   .position = at.cast<double>(),
+                   .rotation = random.Rotation(),
+                   .linearVelocity = random.InBox(std::pow(10.0f, random.Between(0, 3))),
+                   .angularVelocity = random.InBox(std::pow(10.0f, random.Between(0, 3))),
+                   .maxAngularSpeed = 1e4f,
+                   .continuous = ContinuousCollision::LinearAndAngular});
+        for (int step = 0; step < 6; ++step) {
+            const double begin = ProcessorSeconds();
+            world.Step();
+            EXPECT_LT(ProcessorSeconds() - begin, (kIsSanitized ? 20 : 1) * 0.6) << "seed " << seed;
+        }
+        EXPECT_TRUE(world.AllFinite());
+    }
 }
 
 // Fast bodies wedged among many others: a world that was restored builds its trees anew, in another order.

@@ -105,6 +105,43 @@ TEST(ShapeCast, TurnsUpToTheFirstTouchOfWhatTurns) {
     ExpectFirstTouch(QueryShapes(), Turning::OfBoth, Cases(2100), 8e-5);
 }
 
+// Far ends that are fast and touch nothing must not use up the iterations.
+TEST(ShapeCast, TurnsUpToTheFirstTouchOfShapesOfAnySizes) {
+    int cases = 0, hits = 0, early = 0;
+    for (uint32_t seed = 0; seed < static_cast<uint32_t>(Cases(4000)); ++seed) {
+        RandomPoses random(seed);
+        const float large = std::pow(10.0f, random.Between(0, 4)),
+                    thin = large * std::pow(10.0f, random.Between(-3, 0));
+        const float small = random.Between(0.1f, 2);
+        const ConvexPtr pairs[3][2] = {
+            {MakeBox(Vector3(large, thin, 0.7f * large)), MakeBox(Vector3(small, 0.3f, 0.1f))},
+            {MakeBox(Vector3(thin, large, thin)), MakeBox(Vector3(small, 0.2f, 0.2f))},
+            {MakeBox(Vector3(small, 0.1f, small)), MakeBox(Vector3(large, thin, 0.3f * large))}};
+        const ConvexPtr &a = pairs[seed % 3][0], &b = pairs[seed % 3][1];
+        const Vector3 at = random.InBox(1.5f * (seed % 5 == 0 ? large : thin) + 4);
+        ShapeMotion motion{{at.cast<double>(), random.Rotation()}};
+        motion.displacement = random.InBox(std::pow(10.0f, random.Between(-2, 2)));
+        motion.turn = random.InBox(std::pow(10.0f, random.Between(-3, 1)));
+        if (seed % 2 == 1) motion.turnOfOther = random.InBox(std::pow(10.0f, random.Between(-3, 1)));
+        ShapeHit hit;
+        const bool found = ShapeCaster(*b, motion).CastClosest(*a, {}, {.measureDepth = false}, hit);
+        if (found && hit.fraction == 0) continue;
+        ++cases;
+        hits += found;
+        early += found && hit.isEarly;
+        // Between poses of 1e4 m in float distances are off by some 1e-3 m, but none was below 0.
+        const double end = found ? double{hit.fraction} : 1, rounding = 1e-6 * double{large + small};
+        for (int k = 0; k < 40; ++k) {
+            const double fraction = end * (k < 20 ? k / 20.0 : 1 - std::pow(0.7, k - 19));
+            EXPECT_GT(MeasureConvex(*a, *b, PoseAt(motion, fraction), 1e6f).separation, -rounding)
+                << "seed " << seed << " at " << fraction << " of " << end;
+        }
+    }
+    EXPECT_GT(hits, cases / 20);
+    EXPECT_LE(early, cases / 200 + 1);
+    std::printf("  %d cases, %d hits, %d early\n", cases, hits, early);
+}
+
 TEST(ShapeCast, CurvedShapesTouchToo) {
     const std::vector<NamedShape> shapes = {
         {"ellipsoid", std::make_shared<RoundedEllipsoid>(Vector3(0.3f, 0.6f, 0.9f))},
