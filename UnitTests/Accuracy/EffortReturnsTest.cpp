@@ -24,10 +24,10 @@ TEST(EffortReturns, ALandingIsNone) {
     uint32_t returns = 0;
     for (int i = 0; i < 600; ++i) {
         world.Step();
-        const int effort = world.System().Report().mostEffort[0].substeps;
+        const int effort = world.Ours("").Report().mostEffort[0].substeps;
         rises += effort > last;
         last = effort;
-        returns += efforts.Sample(world.System());
+        returns += efforts.Sample(world.Ours(""));
     }
     EXPECT_GT(rises, 10);
     EXPECT_EQ(returns, 0u);
@@ -47,7 +47,7 @@ TEST(EffortReturns, ARiseWithTheSameContactsIsOne) {
         uint32_t returns = 0;
         for (int i = 0; i < 300; ++i) {
             world.Step();
-            returns += efforts.Sample(world.System());
+            returns += efforts.Sample(world.Ours(""));
         }
         return returns;
     };
