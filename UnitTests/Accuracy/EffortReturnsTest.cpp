@@ -43,7 +43,7 @@ TEST(EffortReturns, ARiseWithTheSameContactsIsOne) {
     world.Add({.shape = BoxOf(0.5, 0.5, 0.5), .position = {0, 1.5, 0}, .mass = 100'000});
     EffortReturns efforts;
     const auto returnsWith = [&](float target) {
-        EXPECT_TRUE(world.Bodies().SetPenetrationTarget(light, target));
+        EXPECT_TRUE(world.Ours("").Bodies().SetPenetrationTarget(light, target));
         uint32_t returns = 0;
         for (int i = 0; i < 300; ++i) {
             world.Step();

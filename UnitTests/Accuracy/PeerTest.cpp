@@ -91,7 +91,7 @@ TEST(PeerRun, ScenesMeasureThePeersMotion) {
     for (const int rate : {30, 60, 240}) {
         const RunRecord run = MeasureIn(kFalling, "projectile", rate);
         EXPECT_EQ(run.unsupported, "");
-        EXPECT_NEAR(run.Error(), FallError(rate), 1e-5 * FallError(rate)) << rate;
+        EXPECT_NEAR(run.Error(), FallError(rate), 1e-7) << rate;  // 9.81 is a float
         EXPECT_TRUE(std::isnan(run.traversals));
         EXPECT_GT(run.microseconds, 0);
     }
@@ -100,7 +100,7 @@ TEST(PeerRun, ScenesMeasureThePeersMotion) {
 TEST(PeerRun, SaysWhatThePeerLacks) {
     EXPECT_EQ(MeasureIn(kFalling, "pendulum").unsupported, "joints");
     EXPECT_EQ(MeasureIn(kFalling, "weight").unsupported, "the forces of contacts");
-    EXPECT_EQ(MeasureIn(kFalling, "soak").unsupported, "the memory that it uses");
+    EXPECT_EQ(MeasureIn(kFalling, "coincident.128").unsupported, "its pairs and the memory that it uses");
     EXPECT_EQ(MeasureIn(kFalling, "bad_input").unsupported, "refusals of input");
     EXPECT_EQ(MeasureIn(kFalling, "degenerate").unsupported, "checks of input without a step");
     EXPECT_TRUE(MeasureIn(kFalling, "pendulum").errors.empty());
@@ -208,7 +208,7 @@ TEST(Bullet, JointsConvergeToTheClosedForms) {
 
 TEST(Bullet, ContactsConvergeToTheClosedForms) {
     for (const char* scene : {"incline.slide", "slide_to_roll", "rolling.sphere", "rolling.hoop", "rolling.cylinder",
-                              "friction_isotropy", "restitution.0.8"}) {
+                              "friction_isotropy"}) {
         const RunRecord run = MeasureIn(Bullet(), scene, 240);
         EXPECT_EQ(run.unsupported, "") << scene;
         EXPECT_LT(run.Error(), 0.05) << scene;
@@ -218,8 +218,8 @@ TEST(Bullet, ContactsConvergeToTheClosedForms) {
 // Masks, continuous collision, sleep.
 TEST(Bullet, HasWhatBodiesAreCreatedWith) {
     EXPECT_EQ(MeasureIn(Bullet(), "bullet.wall_0.1").Error(), 0);
-    EXPECT_EQ(ErrorNamed(MeasureIn(Bullet(), "tall_stack.15", 240), "sink") < 0.05, true);
     const RunRecord stack = MeasureIn(Bullet(), "tall_stack.15", 240);
+    EXPECT_LT(ErrorNamed(stack, "sink"), 0.05);
     EXPECT_GT(stack.figures.at(0).value, 0) << "it falls asleep";
 }
 #endif
