@@ -24,7 +24,7 @@ std::vector<SceneRuns> ByScene(std::vector<RunRecord> runs);
 
 // What the numbers were measured with.
 struct Circumstances {
-    std::string commit;  // empty: not known
+    std::string commit{};  // empty: not known
     bool isQuick = false;
     int threads = 1;
     const Peer* peer = nullptr;  // null: none

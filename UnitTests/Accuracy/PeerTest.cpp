@@ -75,12 +75,6 @@ RunRecord MeasureIn(const Peer& peer, const char* scene, int rate = 60) {
                           .peer = &peer};
     return Measure(*FindLabScenes(scene).at(0), setting, true, true);
 }
-double ErrorNamed(const RunRecord& run, const char* name) {
-    for (const NamedValue& error : run.errors)
-        if (error.name == name) return error.value;
-    return kNaN;
-}
-
 // Symplectic Euler is g t dt / 2 too low, of a chord of |v0 t + g t^2 / 2|.
 double FallError(int rate) {
     const Position chord(-20, 20 - 0.5 * kGravity * 100, 80);
@@ -182,6 +176,11 @@ TEST(PeerOption, IsRefusedWhereItMeansNothing) {
 }
 
 #ifdef FULCRUM_PEER_BULLET
+double ErrorNamed(const RunRecord& run, const char* name) {
+    for (const NamedValue& error : run.errors)
+        if (error.name == name) return error.value;
+    return kNaN;
+}
 const Peer& Bullet() { return *FindPeer("bullet", "accuracy").Value(); }
 
 TEST(Bullet, FallsAsSymplecticEulerDoes) {
