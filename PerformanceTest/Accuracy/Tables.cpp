@@ -115,8 +115,9 @@ std::string PeerTable(std::span<const SceneRuns> scenes, const Peer& peer) {
         table += "| " + name + " | " + ErrorText(ours) + " @ " + CostText(ours) + " | " + ErrorText(its) + " @ " +
                  CostText(its) + " |\n";
     }
-    return table +
-           (lacking.empty() ? "" : "\nNot run in " + peer.Label() + ", which lacks what they need: " + lacking + ".\n");
+    return table + (lacking.empty() ? ""
+                                    : "\nNot run in " + peer.Label() +
+                                          ", where the lab has no counterpart of what they need: " + lacking + ".\n");
 }
 
 std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& circumstances) {

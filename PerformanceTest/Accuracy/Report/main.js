@@ -87,7 +87,7 @@ function makeCard(scene) {
     element('div', [element('h2', scene.name), choice], { className: 'top' }),
     element('p', scene.what),
     element('p', '', { className: 'what-error' }),
-    scene.peer_lacks ? element('p', `Not run in ${data.peer.engine}, which lacks ${scene.peer_lacks}`, { className: 'lacking' }) : '',
+    scene.peer_lacks ? element('p', `Not run in ${data.peer.engine}, where the lab has no counterpart of ${scene.peer_lacks}`, { className: 'lacking' }) : '',
     conditions.length > 0 ? element('p', `The default fails: ${conditions.join('; ')}`, { className: 'failed' }) : '',
     element('div', '', { className: 'plot' }),
   ], { className: 'scene', id: scene.name });
