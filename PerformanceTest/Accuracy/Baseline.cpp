@@ -81,6 +81,7 @@ std::string BaselineOf(std::span<const RunRecord> runs, bool isQuick) {
                        ", \"quick\": " + (isQuick ? "true" : "false") + ", \"scenes\": {";
     const RunRecord* last = nullptr;
     for (const RunRecord& run : runs) {
+        if (run.setting.peer) continue;
         const bool isSame = last && last->scene == run.scene;
         if (!isSame) text += (last ? "\n}," : "") + ("\n" + Json(run.scene).dump()) + ": {";
         text += (isSame ? ",\n" : "\n") + LineOf(run);
@@ -107,6 +108,7 @@ Result<Comparison> CompareWithBaseline(const std::string& text, std::span<const 
         Comparison comparison;
         std::set<std::pair<std::string, std::string>> made;
         for (const RunRecord& run : runs) {
+            if (run.setting.peer) continue;
             const std::string key = run.setting.Key();
             made.insert({run.scene, key});
             if (!scenes.contains(run.scene) || !scenes[run.scene].contains(key))

@@ -27,11 +27,15 @@ struct PlannedRun {
 std::vector<PlannedRun> Plan(const LabOptions& options) {
     std::vector<PlannedRun> plan;
     for (const LabScene* scene : options.scenes) {
-        const auto grid = !options.settings.empty() ? options.settings
-                          : options.comparesTargets ? TargetGrid(scene->influences)
-                          : options.advises         ? AdviceGrid(scene->influences)
-                          : options.isQuick         ? QuickGrid(scene->influences)
-                                                    : FullGrid(scene->influences, scene->isSlow);
+        auto grid = !options.settings.empty() ? options.settings
+                    : options.comparesTargets ? TargetGrid(scene->influences)
+                    : options.advises         ? AdviceGrid(scene->influences)
+                    : options.isQuick         ? QuickGrid(scene->influences)
+                                              : FullGrid(scene->influences, scene->isSlow);
+        if (options.peer) {
+            const auto more = PeerGrid(scene->influences, *options.peer, options.isQuick);
+            grid.insert(grid.end(), more.begin(), more.end());
+        }
         for (const Setting& setting : grid)
             plan.push_back(
                 {scene, setting, 1 + static_cast<int>((10.0 * setting.rate + setting.PassesPerSecond()) / 1000)});
@@ -70,6 +74,7 @@ public:
             const Json json = Json::parse(line, nullptr, false);
             if (json.is_discarded()) break;
             Result<RunRecord> record = RecordFromJson(json);
+            if (!record && record.GetError().code == ErrorCode::Unsupported) continue;
             if (!record) break;
             runs[KeyOf(record.Value())] = std::move(record.Value());
         }
@@ -111,9 +116,11 @@ void MakeRuns(const std::vector<PlannedRun>& plan, const LabOptions& options, Ru
     std::optional<Progress> progress;
     if (options.showsProgress) progress.emplace("accuracy", total, ProgressShows::TimeLeft);
     std::atomic<size_t> next{0};
-    std::mutex mutex;
+    std::mutex mutex, ofPeer;  // Bullet is not made for several threads, even of several worlds
     const auto work = [&] {
         for (size_t i; (i = next++) < plan.size();) {
+            std::unique_lock<std::mutex> alone;
+            if (plan[i].setting.peer) alone = std::unique_lock(ofPeer);
             RunRecord record = Measure(*plan[i].scene, plan[i].setting, options.isQuick, options.isTimedOnce);
             const std::lock_guard lock(mutex);
             log.Append(record);

@@ -15,6 +15,7 @@ struct LabOptions {
     bool isQuick = false;
     bool comparesTargets = false;  // the grid is TargetGrid
     bool advises = false;          // the grid is AdviceGrid
+    const Peer* peer = nullptr;    // another engine that runs PeerGrid besides the grid; null: none
     bool isTimedOnce = false;      // else costs are medians of five runs, unless that takes too long
     int threads = 1;               // runs at a time; the engine of each has one thread
     bool resumes = false;
@@ -22,9 +23,9 @@ struct LabOptions {
     bool showsProgress = true;     // on stderr
 };
 
-// All runs, sorted by scene and setting, with their self errors. When resuming, the complete lines of runs.jsonl are
-// kept and only missing runs are made; otherwise an existing file is renamed to runs.jsonl.bak. Errors OutOfRange: the
-// folder cannot be written; the file is of another grid or another version.
+// All runs, sorted by scene and setting, those of another engine last, with their self errors. When resuming, the
+// complete lines of runs.jsonl are kept and only missing runs are made; otherwise an existing file is renamed to
+// runs.jsonl.bak. Errors OutOfRange: the folder cannot be written; the file is of another grid or another version.
 Result<std::vector<RunRecord>> RunLab(const LabOptions& options);
 
 }  // namespace fulcrum::accuracy

@@ -6,6 +6,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Setting.h>
 #include <Fulcrum/Samples/Scenes/Random.h>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,11 @@ class LabRecorder;
 struct NamedValue {
     std::string name;
     double value;
+};
+
+// Ends a run in another engine: says what that lacks.
+struct NotInPeer : std::runtime_error {
+    using std::runtime_error::runtime_error;
 };
 
 // Cost of a run so far.
@@ -66,6 +72,7 @@ public:
     std::vector<double> observed;
     std::vector<std::string> failedConditions;  // each once
     std::string worst;                          // what has the largest error, and when; empty: unknown
+    bool isLost = false;                        // numbers of a peer were not finite: errors mean nothing
     Work work;
 };
 

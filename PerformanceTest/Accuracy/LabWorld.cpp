@@ -1,11 +1,19 @@
 #include <Fulcrum/PerformanceTest/Accuracy/LabWorld.h>
 
 #include <Fulcrum/PerformanceTest/Accuracy/LabRecorder.h>
+#include <Fulcrum/PerformanceTest/Peers/Peer.h>
 
 #include <algorithm>
 #include <chrono>
 
 namespace fulcrum::accuracy {
+namespace {
+
+void ThrowIfLacking(const Status& status) {
+    if (!status) throw NotInPeer(status.GetError().message);
+}
+
+}  // namespace
 
 void LabRun::Require(bool holds, const std::string& condition) {
     if (!holds && std::find(failedConditions.begin(), failedConditions.end(), condition) == failedConditions.end())
@@ -19,7 +27,7 @@ LabWorld::LabWorld(LabRun& run, const Vector3& gravity, void (*change)(SystemSet
     settings.gravity = gravity;
     settings.sleep.enabled = false;
     change(settings);
-    system_ = PhysicsSystem::Create(settings, run.jobs).Value();
+    Create(settings);
 }
 
 LabWorld::LabWorld(LabRun& run, SystemSettings settings) : run_(run) {
@@ -32,7 +40,13 @@ LabWorld::LabWorld(LabRun& run, SystemSettings settings) : run_(run) {
         settings.accuracy.penetration = effort.accuracy.penetration;
         settings.accuracy.jointError = effort.accuracy.jointError;
     }
-    system_ = PhysicsSystem::Create(settings, run.jobs).Value();
+    Create(settings);
+}
+
+void LabWorld::Create(const SystemSettings& settings) {
+    system_ = PhysicsSystem::Create(settings, run_.jobs).Value();
+    const Setting& setting = run_.setting;
+    if (setting.peer) peer_ = setting.peer->create(*system_, setting.solver.velocityIterations);
 }
 
 LabWorld::~LabWorld() {
@@ -55,7 +69,8 @@ LabWorld::~LabWorld() {
 }
 
 BodyId LabWorld::Add(const BodySettings& settings) {
-    const BodyId id = Bodies().Create(settings).Value();
+    const BodyId id = system_->Bodies().Create(settings).Value();
+    if (peer_) ThrowIfLacking(peer_->AddBody(id, settings));
     if (settings.motion == MotionType::Dynamic) dynamic_.push_back({id, settings.position});
     return id;
 }
@@ -67,15 +82,36 @@ BodyId LabWorld::AddFloor(float friction, float restitution, double halfWidth, c
                 .material = {.friction = friction, .restitution = restitution}});
 }
 
+void LabWorld::Joined(JointId id, const JointSettings& settings) {
+    if (peer_) ThrowIfLacking(peer_->AddJoint(id, settings));
+}
+
+PhysicsSystem& LabWorld::Ours(const char* what) {
+    if (peer_) throw NotInPeer(what);
+    return *system_;
+}
+
+int LabWorld::AwakeBodies() const {
+    if (!peer_) return static_cast<int>(system_->Report().awakeBodies);
+    return static_cast<int>(
+        std::ranges::count_if(dynamic_, [&](const Built& built) { return Bodies().IsAwake(built.id); }));
+}
+
 void LabWorld::Step(double dt) {
     if (run_.recorder) run_.recorder->AddFrame(*system_, time_);
     using Clock = std::chrono::steady_clock;
     const uint32_t awakeBefore = system_->Report().awakeBodies;
     const Clock::time_point start = Clock::now();
-    (void)system_->Update(dt).Value();
+    if (!peer_) (void)system_->Update(dt).Value();
+    else if (!run_.isLost) peer_->Step(dt);
     work_.seconds += std::chrono::duration<double>(Clock::now() - start).count();
     work_.simulatedSeconds += dt;
     time_ += dt;
+    if (peer_) {
+        run_.isLost = run_.isLost || !peer_->CopyTo(*system_);
+        isFinite_ &= !run_.isLost;
+        return;
+    }
     const StepReport& report = system_->Report();
     const SolverSettings& solver = system_->Settings().solver;
     const double passes = solver.substeps * (solver.velocityIterations + solver.positionIterations);

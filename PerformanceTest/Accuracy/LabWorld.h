@@ -1,5 +1,9 @@
 // The physics system of a run: times its steps, counts their work, and checks general conditions. Also helpers to build
 // scenes. Made by the scenes; one thread.
+//
+// In a run of another engine (Setting::peer) the world of that engine gets the bodies and joints, too, steps in place
+// of ours, and puts its poses and velocities into ours after each step, so that scenes measure both alike. What cannot
+// be had that way ends the run with NotInPeer.
 #pragma once
 
 #include <Fulcrum/Fulcrum.h>
@@ -10,6 +14,10 @@
 #include <memory>
 #include <optional>
 #include <vector>
+
+namespace fulcrum {
+class PeerWorld;
+}
 
 namespace fulcrum::accuracy {
 
@@ -38,7 +46,9 @@ public:
                     const Position& origin = {0, 0, 0});
     template <class Settings>
     JointId Join(const Settings& settings) {
-        return Joints().Create(settings).Value();
+        const JointId id = system_->Joints().Create(settings).Value();
+        Joined(id, settings);
+        return id;
     }
 
     void Step() { Step(run_.Dt()); }
@@ -48,12 +58,17 @@ public:
     }
     double Time() const { return time_; }  // s
 
-    PhysicsSystem& System() { return *system_; }
-    BodyInterface& Bodies() { return system_->Bodies(); }
-    JointInterface& Joints() { return system_->Joints(); }
-    Position At(BodyId id) { return Bodies().GetPose(id).position; }
-    Position Speed(BodyId id) { return Bodies().GetLinearVelocity(id).cast<double>(); }
-    Position Turn(BodyId id) { return Bodies().GetAngularVelocity(id).cast<double>(); }
+    // Our engine, for what only it has, which is named: reports, contacts, forces, changes of bodies and joints. Throws
+    // NotInPeer where another engine runs.
+    PhysicsSystem& Ours(const char* what);
+    bool IsPeer() const { return peer_ != nullptr; }
+    const BodyInterface& Bodies() const { return system_->Bodies(); }
+    const JointInterface& Joints() const { return system_->Joints(); }  // forces: through Ours
+    double Energy() const { return system_->GetEnergy(); }              // J
+    int AwakeBodies() const;                                            // dynamic ones
+    Position At(BodyId id) const { return Bodies().GetPose(id).position; }
+    Position Speed(BodyId id) const { return Bodies().GetLinearVelocity(id).cast<double>(); }
+    Position Turn(BodyId id) const { return Bodies().GetAngularVelocity(id).cast<double>(); }
     double FastestBody();
     // All gaps of the joints together, m.
     double SumOfGaps();
@@ -65,8 +80,12 @@ private:
         BodyId id;
         Position position;
     };
+    void Create(const SystemSettings& settings);
+    void Joined(JointId id, const JointSettings& settings);
+
     LabRun& run_;
     std::unique_ptr<PhysicsSystem> system_;
+    std::unique_ptr<PeerWorld> peer_;  // null: ours steps
     std::vector<Built> dynamic_;
     double time_ = 0;
     Work work_;

@@ -31,7 +31,8 @@ int Advise(const LabCommand& command, std::span<const SceneRuns> scenes) {
 
 // Files in the lab's folder, and the document's tables. Returns the exit status.
 int Write(const LabCommand& command, std::span<const SceneRuns> scenes) {
-    const Circumstances circumstances{command.commit, command.lab.isQuick, command.lab.threads};
+    const Peer* peer = command.lab.peer;
+    const Circumstances circumstances{command.commit, command.lab.isQuick, command.lab.threads, peer};
     const nlohmann::ordered_json json = JsonOf(scenes, circumstances);
     const std::string tables = TablesOf(scenes, circumstances);
     const std::filesystem::path& folder = command.lab.folder;
@@ -43,7 +44,9 @@ int Write(const LabCommand& command, std::span<const SceneRuns> scenes) {
     if (const Status written = WriteReport(json, folder / "report.html"); !written)
         return Fail(written.GetError().message);
     if (!command.table.empty())
-        if (const Status written = WriteTables(tables, command.table); !written)
+        if (const Status written = peer ? WriteTables(PeerTable(scenes, *peer), command.table, "peer")
+                                        : WriteTables(tables, command.table);
+            !written)
             return Fail(written.GetError().message);
     if (command.baseline.empty()) std::printf("%s\n", tables.c_str());
     std::printf("Wrote %s\n", (folder / "report.html").c_str());

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
 #include <Fulcrum/PerformanceTest/Accuracy/UserScene.h>
+#include <Fulcrum/PerformanceTest/Peers/Peer.h>
 #include <Fulcrum/Samples/Runner/CommandLine.h>
 
 #include <cstdlib>
@@ -96,9 +97,17 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
     app.add_flag_function(
         "--resume", [&](int64_t) { command.lab.resumes = true; },
         "take over the runs that DIR has, which must be of the same build, and make the others");
-    AddText(app, "--table", "write the tables between the marks of this document, too", [&](const std::string& text) {
-        command.table = text;
-    })->type_name("FILE");
+    AddText(app, "--peer", "also run the scenes in another engine, as far as it has what they need: bullet",
+            [&](const std::string& engine) {
+                const Result<const Peer*> peer = FindPeer(engine, "accuracy");
+                if (!peer) throw CLI::ValidationError(peer.GetError().message);
+                command.lab.peer = peer.Value();
+            })
+        ->type_name("ENGINE");
+    AddText(app, "--table",
+            "write the tables between the marks of this document, too; with --peer that of both engines",
+            [&](const std::string& text) { command.table = text; })
+        ->type_name("FILE");
     app.add_flag_function(
         "--once", [&](int64_t) { command.lab.isTimedOnce = true; },
         "time each run once: enough for the errors, in a fifth of the time");
@@ -127,6 +136,8 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
     if (!parsed) return parsed.GetError();
     command.help = parsed.Value();
     command.recordings.isQuick = command.lab.isQuick;
+    if (command.lab.peer && (command.soaks || command.lab.comparesTargets))
+        return Error{ErrorCode::OutOfRange, "--peer goes without --soak and --targets"};
     if (command.soaks) {
         if (name != "all" || command.lab.isQuick || !command.baseline.empty() || !command.save.empty())
             return Error{ErrorCode::OutOfRange, "--soak is a run of its own: no --scene, --quick, --save, --baseline"};

@@ -3,6 +3,7 @@
 #include <Fulcrum/Math/Wide.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Curves.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
+#include <Fulcrum/PerformanceTest/Peers/Peer.h>
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
 #include <Fulcrum/Samples/Viewer/WholeFile.h>
 
@@ -40,6 +41,13 @@ std::string Joined(const std::vector<std::string>& parts) {
     return text;
 }
 
+// Ours, then the other engine's.
+std::vector<RunRecord> AllOf(const SceneRuns& scene) {
+    std::vector<RunRecord> all = scene.runs;
+    all.insert(all.end(), scene.peerRuns.begin(), scene.peerRuns.end());
+    return all;
+}
+
 Json SummaryOf(std::span<const RunRecord> runs) {
     Json summary;
     summary["slope"] = NumberJson(SlopeOverDt(runs));
@@ -62,7 +70,9 @@ std::vector<SceneRuns> ByScene(std::vector<RunRecord> runs) {
     for (RunRecord& run : runs) {
         if (scenes.empty() || scenes.back().scene->FullName() != run.scene)
             scenes.push_back({FindLabScenes(run.scene)[0], {}});
-        scenes.back().runs.push_back(std::move(run));
+        SceneRuns& scene = scenes.back();
+        if (!run.unsupported.empty()) scene.peerLacks = run.unsupported;
+        else (run.setting.peer ? scene.peerRuns : scene.runs).push_back(std::move(run));
     }
     return scenes;
 }
@@ -77,17 +87,16 @@ std::string CsvOf(std::span<const SceneRuns> scenes) {
         return "\"" + Joined(parts) + "\"";
     };
     for (const SceneRuns& scene : scenes)
-        for (const RunRecord& run : scene.runs) {
+        for (const RunRecord& run : AllOf(scene)) {
             const Setting& setting = run.setting;
             std::string line;
             for (const std::string& cell :
-                 {run.scene, std::string(FamilyName(setting.family)), std::to_string(setting.rate),
-                  Number(setting.Dt()), std::to_string(setting.solver.substeps),
-                  std::to_string(setting.solver.velocityIterations), std::to_string(setting.solver.positionIterations),
-                  std::string(setting.Preset()), Number(run.Error()), Number(run.selfError),
-                  std::string(run.blewUp ? "1" : "0"), Number(run.microseconds), std::to_string(run.timedRuns),
-                  Number(run.traversals), std::to_string(run.seeds), named(run.errors), named(run.figures),
-                  "\"" + Joined(run.failedConditions) + "\""})
+                 {run.scene, std::string(setting.FamilyText()), std::to_string(setting.rate), Number(setting.Dt()),
+                  std::to_string(setting.solver.substeps), std::to_string(setting.solver.velocityIterations),
+                  std::to_string(setting.solver.positionIterations), std::string(setting.Preset()), Number(run.Error()),
+                  Number(run.selfError), std::string(run.blewUp ? "1" : "0"), Number(run.microseconds),
+                  std::to_string(run.timedRuns), Number(run.traversals), std::to_string(run.seeds), named(run.errors),
+                  named(run.figures), "\"" + Joined(run.failedConditions) + "\""})
                 line += (line.empty() ? "" : ",") + cell;
             csv += line + "\n";
         }
@@ -104,6 +113,8 @@ Json JsonOf(std::span<const SceneRuns> scenes, const Circumstances& circumstance
     json["date"] = UtcNow();
     json["quick"] = circumstances.isQuick;
     json["runs_at_a_time"] = circumstances.threads;
+    const Peer* peer = circumstances.peer;
+    json["peer"] = peer ? Json{{"family", peer->name}, {"engine", peer->Label()}} : Json(nullptr);
     json["peers"] = Json::parse(ReadFile(FULCRUM_ACCURACY_PEERS), nullptr, false);
     json["scenes"] = Json::array();
     for (const SceneRuns& each : scenes) {
@@ -116,7 +127,8 @@ Json JsonOf(std::span<const SceneRuns> scenes, const Circumstances& circumstance
         object["blow_up"] = scene.blowUp;
         object["summary"] = SummaryOf(each.runs);
         object["runs"] = Json::array();
-        for (const RunRecord& run : each.runs) object["runs"].push_back(ToJson(run));
+        for (const RunRecord& run : AllOf(each)) object["runs"].push_back(ToJson(run));
+        if (!each.peerLacks.empty()) object["peer_lacks"] = each.peerLacks;
         json["scenes"].push_back(std::move(object));
     }
     return json;

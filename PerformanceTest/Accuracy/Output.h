@@ -12,19 +12,22 @@
 
 namespace fulcrum::accuracy {
 
-// A scene with its runs.
+// A scene with its runs. Those of another engine are part of the report, but of no envelope, summary or advice.
 struct SceneRuns {
     const LabScene* scene;
     std::vector<RunRecord> runs;
+    std::vector<RunRecord> peerRuns{};
+    std::string peerLacks{};  // not empty: why the other engine has not run it
 };
 // Runs in the order of RunLab.
 std::vector<SceneRuns> ByScene(std::vector<RunRecord> runs);
 
 // What the numbers were measured with.
 struct Circumstances {
-    std::string commit;  // empty: not known
+    std::string commit{};  // empty: not known
     bool isQuick = false;
     int threads = 1;
+    const Peer* peer = nullptr;  // null: none
 };
 
 std::string CsvOf(std::span<const SceneRuns> scenes);
@@ -33,7 +36,9 @@ nlohmann::ordered_json JsonOf(std::span<const SceneRuns> scenes, const Circumsta
 // One page with all of runs.json in it. Error OutOfRange: the page has not been built, or cannot be written.
 Status WriteReport(const nlohmann::ordered_json& runs, const std::filesystem::path& path);
 
-// Tables: accuracy scenes, extreme scenes, envelopes.
+// Our default against another engine's, and what that has not run and why.
+std::string PeerTable(std::span<const SceneRuns> scenes, const Peer& peer);
+// Tables: accuracy scenes, extreme scenes, envelopes, and that of another engine if there is one.
 std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& circumstances);
 // Replaces what is between the marks "accuracy NAME: begin" and "... end" in the file. Error OutOfRange: there are no
 // marks, or it cannot be written.

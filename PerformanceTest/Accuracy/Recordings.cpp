@@ -46,6 +46,7 @@ Status WriteRecordings(std::span<const RunRecord> runs, const RecordingOptions& 
     std::vector<const RunRecord*> wanted;
     std::string keys;
     for (const RunRecord& run : runs) {
+        if (!run.unsupported.empty()) continue;
         if (options.isOfAll || run.setting.Key() == options.setting) wanted.push_back(&run);
         if (run.scene == runs.front().scene) keys += (keys.empty() ? "'" : "', '") + run.setting.Key();
     }

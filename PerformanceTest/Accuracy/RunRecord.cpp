@@ -1,6 +1,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/RunRecord.h>
 
 #include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/PerformanceTest/Peers/Peer.h>
 
 #include <nlohmann/json.hpp>
 
@@ -41,6 +42,11 @@ std::vector<NamedValue> MediansOf(const std::vector<LabRun>& runs, std::vector<N
 LabRun RunOnce(const LabScene& scene, const Setting& setting, bool isQuick, uint64_t seed, JobSystem* jobs = nullptr) {
     LabRun run(setting, scene.parameter, isQuick, seed, jobs);
     scene.run(run);
+    if (setting.peer && run.work.simulatedSeconds == 0) throw NotInPeer("checks of input without a step");
+    if (run.isLost) {
+        for (NamedValue& error : run.errors) error.value = kNaN;
+        for (double& value : run.observed) value = kNaN;
+    }
     return run;
 }
 
@@ -68,10 +74,10 @@ std::vector<NamedValue> ListOf(const Json& object) {
 
 }  // namespace
 
-RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, bool isTimedOnce) {
-    RunRecord record;
-    record.scene = scene.FullName();
-    record.setting = setting;
+namespace {
+
+void MeasureRuns(const LabScene& scene, bool isQuick, bool isTimedOnce, RunRecord& record) {
+    const Setting& setting = record.setting;
     record.seeds = isQuick ? scene.quickSeeds : scene.seeds;
     std::vector<LabRun> runs;
     std::vector<double> microseconds;
@@ -90,7 +96,7 @@ RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, b
 
     // At the presets, in short grids at the default: the bits are those of two threads, too.
     const std::string preset = setting.Preset();
-    if (scene.isExtreme && (isQuick ? preset == "balanced" : !preset.empty())) {
+    if (scene.isExtreme && !setting.peer && (isQuick ? preset == "balanced" : !preset.empty())) {
         ThreadPool pool(2);
         runs[0].Require(HasSameResults(runs[0], RunOnce(scene, setting, isQuick, 1, &pool)),
                         "the same results with 1 and 2 threads");
@@ -115,12 +121,25 @@ RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, b
         record.traversals += run.work.traversals;
         simulated += run.work.simulatedSeconds;
     }
-    record.traversals /= std::max(simulated, 1e-9);
+    record.traversals = setting.peer ? kNaN : record.traversals / std::max(simulated, 1e-9);
     record.effortReturns = runs[0].work.effortReturns;
     record.worst = runs[0].worst;
     record.timedRuns = static_cast<int>(microseconds.size());
     record.microseconds = Median(std::move(microseconds));
     record.blewUp = !(record.Error() <= scene.blowUp);
+}
+
+}  // namespace
+
+RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, bool isTimedOnce) {
+    RunRecord record;
+    record.scene = scene.FullName();
+    record.setting = setting;
+    try {
+        MeasureRuns(scene, isQuick, isTimedOnce, record);
+    } catch (const NotInPeer& lacking) {
+        record.unsupported = lacking.what();
+    }
     return record;
 }
 
@@ -129,7 +148,8 @@ Json ToJson(const RunRecord& record) {
     Json json;
     json["scene"] = record.scene;
     json["setting"] = setting.Key();
-    json["family"] = FamilyName(setting.family);
+    json["family"] = setting.FamilyText();
+    if (setting.peer) json["engine"] = setting.peer->Label();
     json["rate"] = setting.rate;
     json["substeps"] = setting.solver.substeps;
     json["velocity_iterations"] = setting.solver.velocityIterations;
@@ -150,6 +170,7 @@ Json ToJson(const RunRecord& record) {
     json["us_per_second"] = NumberJson(record.microseconds);
     json["cost_ratio"] = NumberJson(record.costRatio);
     json["timed_runs"] = record.timedRuns;
+    if (!record.unsupported.empty()) json["unsupported"] = record.unsupported;
     if (!record.worst.empty()) json["worst"] = record.worst;
     if (!record.recording.empty()) json["recording"] = record.recording;
     return json;
@@ -162,7 +183,12 @@ Result<RunRecord> RecordFromJson(const Json& json) {
         const std::string family = json.at("family").get<std::string>();
         int kind = 0;
         while (kind < kFamilies && family != FamilyName(static_cast<Family>(kind))) ++kind;
-        if (kind == kFamilies) return Error{ErrorCode::OutOfRange, "there is no family '" + family + "'"};
+        if (kind == kFamilies) {
+            const Result<const Peer*> peer = FindPeer(family, "accuracy");
+            if (!peer && peer.GetError().code == ErrorCode::Unsupported) return peer.GetError();
+            if (!peer) return Error{ErrorCode::OutOfRange, "there is no family '" + family + "'"};
+            record.setting.peer = peer.Value();
+        }
         record.setting.family = static_cast<Family>(kind);
         record.setting.rate = json.at("rate").get<int>();
         SolverSettings& solver = record.setting.solver;
@@ -175,6 +201,7 @@ Result<RunRecord> RecordFromJson(const Json& json) {
         record.figures = ListOf(json.at("figures"));
         for (const Json& value : json.at("observed")) record.observed.push_back(NumberOf(value));
         record.failedConditions = json.at("failed_conditions").get<std::vector<std::string>>();
+        record.unsupported = json.value("unsupported", "");
         record.worst = json.value("worst", "");
         record.blewUp = json.at("blew_up").get<bool>();
         record.seeds = json.at("seeds").get<int>();
@@ -190,13 +217,15 @@ Result<RunRecord> RecordFromJson(const Json& json) {
 }
 
 void AddSelfErrors(std::vector<RunRecord>& ofScene) {
-    const RunRecord* finest = nullptr;
+    const RunRecord *ours = nullptr, *peers = nullptr;  // the finest
     for (const RunRecord& run : ofScene) {
-        if (run.setting.family != Family::Soft || run.blewUp) continue;
+        if ((run.setting.family != Family::Soft && !run.setting.peer) || run.blewUp) continue;
         const auto fineness = [](const RunRecord& r) { return std::pair(r.setting.PassesPerSecond(), r.setting.rate); };
+        const RunRecord*& finest = run.setting.peer ? peers : ours;
         if (!finest || fineness(run) > fineness(*finest)) finest = &run;
     }
     for (RunRecord& run : ofScene) {
+        const RunRecord* finest = run.setting.peer ? peers : ours;
         run.selfError = kNaN;
         if (!finest || run.observed.size() != finest->observed.size()) continue;
         double largest = 0;

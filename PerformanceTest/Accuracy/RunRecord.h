@@ -31,6 +31,7 @@ struct RunRecord {
     int timedRuns = 0;
     double selfError = kNaN;  // from the finest setting, not from the closed form; AddSelfErrors fills it
     double costRatio = kNaN;  // to the default setting's; AddCostRatios fills it
+    std::string unsupported;  // not empty: what the other engine lacks for this scene, which was not run then
     std::string recording;    // the file, relative to the lab's folder; empty: none. FindRecordings fills it
 
     // The main error; NaN if the scene reported none.
@@ -38,16 +39,18 @@ struct RunRecord {
 };
 
 // Runs the scene with each of its seeds, and, unless isTimedOnce, repeats it until there are five times or a share of
-// time is used up.
+// time is used up. Another engine's traversals are NaN, and so are its errors where its numbers were not finite.
 RunRecord Measure(const LabScene& scene, const Setting& setting, bool isQuick, bool isTimedOnce = false);
 
 // Not finite: null.
 nlohmann::ordered_json ToJson(const RunRecord& record);
-// Error OutOfRange: no run, or an unknown one.
+// Errors: OutOfRange (no run, or an unknown one), Unsupported (of another engine, without which this program was
+// built).
 Result<RunRecord> RecordFromJson(const nlohmann::ordered_json& json);
 
 // Of one scene, in any order: sets the self errors: the largest difference of a run's observed values from those of the
-// finest soft setting. NaN if there is none, or if the number of values differs.
+// finest soft setting, of another engine from those of its own finest. NaN if there is none, or if the number of values
+// differs.
 void AddSelfErrors(std::vector<RunRecord>& ofScene);
 
 // Of one scene, in any order: sets the cost ratios: the cost of each run relative to the default setting. NaN if there

@@ -1,5 +1,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Setting.h>
 
+#include <Fulcrum/PerformanceTest/Peers/Peer.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <limits>
@@ -68,8 +70,8 @@ double Setting::PassesPerSecond() const {
 }
 
 std::string Setting::Key() const {
-    return std::string(FamilyName(family)) + " 1/" + std::to_string(rate) + " " + std::to_string(solver.substeps) +
-           " " + std::to_string(solver.velocityIterations) + " " + std::to_string(solver.positionIterations) +
+    return std::string(FamilyText()) + " 1/" + std::to_string(rate) + " " + std::to_string(solver.substeps) + " " +
+           std::to_string(solver.velocityIterations) + " " + std::to_string(solver.positionIterations) +
            (family == Family::Target ? " " + TargetText() : "");
 }
 
@@ -79,7 +81,10 @@ std::string Setting::TargetText() const {
     return text;
 }
 
+const char* Setting::FamilyText() const { return peer ? peer->name : FamilyName(family); }
+
 const char* Setting::Preset() const {
+    if (peer) return rate == 60 && solver.velocityIterations == peer->iterations ? "default" : "";
     if (rate == 60 && family == Family::Soft)
         for (const auto& [name, preset] : kPresets)
             if (solver == preset) return name;
@@ -154,6 +159,22 @@ std::vector<Setting> FullGrid(const Influences& influences, bool isCoarse) {
     std::vector<Setting> settings = grid.Take();
     std::stable_sort(settings.begin(), settings.end(),
                      [](const Setting& a, const Setting& b) { return a.PassesPerSecond() < b.PassesPerSecond(); });
+    return settings;
+}
+
+std::vector<Setting> PeerGrid(const Influences& influences, const Peer& peer, bool isQuick) {
+    std::vector<Setting> settings;
+    for (const int rate : {30, 60, 120, 240})
+        for (const int iterations : {peer.iterations, 4, 50}) {
+            const bool isUsual = iterations == peer.iterations;
+            if (!influences.timeStep && rate != 60) continue;
+            if (!isUsual && !influences.contacts && !influences.joints) continue;  // nothing is solved
+            if (!isUsual && isQuick && rate != 60) continue;
+            settings.push_back({.rate = rate,
+                                .solver = {.substeps = 1, .velocityIterations = iterations, .positionIterations = 0},
+                                .family = Family::Peer,
+                                .peer = &peer});
+        }
     return settings;
 }
 

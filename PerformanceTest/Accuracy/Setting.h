@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+namespace fulcrum {
+struct Peer;
+}
+
 namespace fulcrum::accuracy {
 
 // What a curve of the report shows; everything else varies along it.
@@ -17,8 +21,9 @@ enum class Family : uint8_t {
     NoTrees,    // soft rows, joints under load are not solved as trees
     Fixed,      // soft rows, every island with the system's effort: no AccuracyTarget
     Target,     // soft rows, effort by an AccuracyTarget
+    Peer,       // another engine
 };
-inline constexpr int kFamilies = 6;
+inline constexpr int kFamilies = 6;  // ours
 const char* FamilyName(Family family);
 
 struct Setting {
@@ -27,6 +32,7 @@ struct Setting {
     Family family = Family::Soft;
     // Of the family Target: AccuracyTarget::penetration, and its jointError in m.
     float target = 0;
+    const Peer* peer = nullptr;  // of the family Peer: its iterations are the velocity iterations
 
     double Dt() const { return 1.0 / rate; }
     SystemSettings System() const;
@@ -36,7 +42,9 @@ struct Setting {
     // target, too. Names the setting in files.
     std::string Key() const;
     std::string TargetText() const;  // "0.002"
-    // "fast", "balanced" (the default), "accurate", "reference"; empty for others.
+    // "soft", or the name of the other engine.
+    const char* FamilyText() const;
+    // "fast", "balanced" (the default), "accurate", "reference"; of another engine "default"; empty for others.
     const char* Preset() const;
     // The lines that make a program run with it.
     std::string Code() const;
@@ -60,5 +68,8 @@ std::vector<Setting> TargetGrid(const Influences& influences);
 // a part of it for the others, and the presets. Cheap ones first. A coarse one leaves out 1/480 and 1/960 s, and every
 // other number of substeps and iterations: a twentieth of the work.
 std::vector<Setting> FullGrid(const Influences& influences, bool isCoarse = false);
+// Another engine at steps of 1/30 to 1/240 s with its default number of iterations, 4 and 50; in short grids the latter
+// two at 1/60 s only.
+std::vector<Setting> PeerGrid(const Influences& influences, const Peer& peer, bool isQuick);
 
 }  // namespace fulcrum::accuracy

@@ -2,6 +2,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Output.h>
 
 #include <Fulcrum/PerformanceTest/Accuracy/Curves.h>
+#include <Fulcrum/PerformanceTest/Peers/Peer.h>
 #include <Fulcrum/Samples/Viewer/WholeFile.h>
 
 #include <cmath>
@@ -104,11 +105,27 @@ std::string ShortNumber(double value) {
     return shortened;
 }
 
+std::string PeerTable(std::span<const SceneRuns> scenes, const Peer& peer) {
+    std::string table = Heading({"scene", "Fulcrum", peer.Label()}), lacking;
+    for (const SceneRuns& each : scenes) {
+        const std::string name = "`" + each.scene->FullName() + "`";
+        if (!each.peerLacks.empty()) lacking += (lacking.empty() ? "" : "; ") + name + ": " + each.peerLacks;
+        const RunRecord *ours = PresetOf(each, "balanced"), *its = FindPreset(each.peerRuns, "default");
+        if (!ours || !its) continue;
+        table += "| " + name + " | " + ErrorText(ours) + " @ " + CostText(ours) + " | " + ErrorText(its) + " @ " +
+                 CostText(its) + " |\n";
+    }
+    return table + (lacking.empty() ? ""
+                                    : "\nNot run in " + peer.Label() +
+                                          ", where the lab has no counterpart of what they need: " + lacking + ".\n");
+}
+
 std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& circumstances) {
     return std::string("Made by `./fulcrum accuracy") + (circumstances.isQuick ? " --quick" : "") +
            " --table Docs/Accuracy.md`. Each cell: error @ cost, microseconds of work per simulated second.\n\n" +
            AccuracyTable(scenes, false) + "\n" + AccuracyTable(scenes, true) +
-           "\n<details>\n<summary>Envelopes</summary>\n\n" + EnvelopeTable(scenes) + "\n</details>\n";
+           "\n<details>\n<summary>Envelopes</summary>\n\n" + EnvelopeTable(scenes) + "\n</details>\n" +
+           (circumstances.peer ? "\n" + PeerTable(scenes, *circumstances.peer) : "");
 }
 
 Status WriteTables(const std::string& tables, const std::filesystem::path& path, const std::string& name) {

@@ -41,7 +41,7 @@ struct StepError {
 // The larger of the step's largest overlap and largest gap.
 StepError ErrorOf(LabWorld& world) {
     const BodyInterface& bodies = world.Bodies();
-    const StepReport& report = world.System().Report();
+    const StepReport& report = world.Ours("reports of steps").Report();
     StepError error{.bodyA = report.deepestA, .bodyB = report.deepestB, .joint = {}, .time = world.Time()};
     if (report.largestPenetration > 0)
         error.value = double{report.largestPenetration} /
@@ -79,7 +79,7 @@ std::string TextOf(const StepError& error, const SceneIds& ids) {
 void Run(LabRun& run) {
     const SceneDescription& description = theScene.description;
     LabWorld world(run, description.settings);
-    const Result<SceneIds> ids = AddScene(world.System(), description);
+    const Result<SceneIds> ids = AddScene(world.Ours("scenes from files"), description);
     run.Require(bool(ids), "the scene can be created");
     if (!ids) return;
     world.domain = 1e9;
@@ -97,7 +97,7 @@ void Run(LabRun& run) {
     const auto rank = errors.begin() + static_cast<ptrdiff_t>(errors.size() * 19 / 20);
     std::nth_element(errors.begin(), rank, errors.end());
     run.Error("overlap_or_gap", *rank);
-    run.Figure("energy", world.System().GetEnergy());
+    run.Figure("energy", world.Energy());
     if (worst.value > 0) run.worst = TextOf(worst, ids.Value());
 }
 

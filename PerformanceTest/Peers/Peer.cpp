@@ -1,5 +1,7 @@
 #include <Fulcrum/PerformanceTest/Peers/Peer.h>
 
+#include <Fulcrum/Samples/Runner/CommandLine.h>
+
 namespace fulcrum {
 
 #ifdef FULCRUM_PEER_BULLET
@@ -8,14 +10,16 @@ extern const Peer kPeer;
 }
 #endif
 
-std::vector<const Peer*> BuiltPeers() {
+Result<const Peer*> FindPeer(const std::string& name, [[maybe_unused]] const std::string& command) {
+    const std::string known[] = {"bullet"};
+    if (name != known[0]) return UnknownName("peer", name, known);
 #ifdef FULCRUM_PEER_BULLET
-    return {&BulletPeer::kPeer};
+    return &BulletPeer::kPeer;
 #else
-    return {};
+    return Error{ErrorCode::Unsupported, "this program was built without " + name + "; ./fulcrum " + command +
+                                             " --peer " + name +
+                                             " builds it in, as does cmake -DFULCRUM_PEER_BULLET=ON"};
 #endif
 }
-
-std::vector<std::string> PeerNames() { return {"bullet"}; }
 
 }  // namespace fulcrum

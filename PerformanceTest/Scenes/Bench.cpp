@@ -60,9 +60,8 @@ std::optional<double> AccuracyToleranceOf(const std::string& name) {
 // All timed scenes of a call, those of one scene next to each other.
 class Bench {
 public:
-    explicit Bench(const BenchOptions& options) : options_(options), peerRuns_(options.scenes.size()) {
-        for (const Peer* peer : BuiltPeers())
-            if (peer->name == options.peer) peer_ = peer;
+    explicit Bench(const BenchOptions& options)
+        : options_(options), peer_(options.peer), peerRuns_(options.scenes.size()) {
         for (const Scene* scene : options.scenes)
             for (int threads : options.threads)
                 timed_.push_back(std::make_unique<TimedScene>(*scene, threads, options));
@@ -120,7 +119,7 @@ private:
     }
 
     const BenchOptions& options_;
-    const Peer* peer_ = nullptr;
+    const Peer* peer_;  // null: none
     ReferenceKernel kernel_;
     std::vector<std::unique_ptr<TimedScene>> timed_;
     std::vector<PeerRuns> peerRuns_;  // by scene

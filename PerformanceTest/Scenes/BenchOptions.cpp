@@ -44,16 +44,6 @@ double ParseTolerance(std::string text) {
     return value / 100;
 }
 
-void CheckPeer(const std::string& name) {
-    const std::vector<std::string> names = PeerNames();
-    if (std::find(names.begin(), names.end(), name) == names.end())
-        throw CLI::ValidationError(UnknownName("peer", name, names).message);
-    const std::vector<const Peer*> built = BuiltPeers();
-    if (std::none_of(built.begin(), built.end(), [&](const Peer* peer) { return peer->name == name; }))
-        throw CLI::ValidationError("this program was built without " + name + "; ./fulcrum bench --peer " + name +
-                                   " builds it in, as does cmake -DFULCRUM_PEER_BULLET=ON");
-}
-
 void AddTimeOptions(CLI::App& app, BenchOptions& options, std::vector<std::string>& scenes, int& runs) {
     app.add_option_function<std::vector<std::string>>(
            "--scene,SCENE", [&](const std::vector<std::string>& names) { scenes = names; },
@@ -100,8 +90,9 @@ void AddOutputOptions(CLI::App& app, BenchOptions& options) {
         ->type_name("FILE...");
     AddText(app, "--peer", "also run the scenes in another engine, with one thread: bullet",
             [&](const std::string& name) {
-                CheckPeer(name);
-                options.peer = name;
+                const Result<const Peer*> peer = FindPeer(name, "bench");
+                if (!peer) throw CLI::ValidationError(peer.GetError().message);
+                options.peer = peer.Value();
             })
         ->type_name("ENGINE");
     app.add_flag_function(

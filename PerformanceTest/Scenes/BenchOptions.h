@@ -11,6 +11,8 @@
 
 namespace fulcrum {
 
+struct Peer;
+
 struct BenchOptions {
     std::vector<const Scene*> scenes;  // empty: those of the baseline if there is one, else the performance scenes
     std::vector<int> threads;          // likewise, else 1
@@ -26,7 +28,7 @@ struct BenchOptions {
     std::filesystem::path json, save, baseline;  // empty: none
     double tolerance = 0.1;                      // by which a scene may be slower than in the baseline
     std::vector<std::string> history;            // files; if there are any, nothing is timed
-    std::string peer;                            // empty: none
+    const Peer* peer = nullptr;                  // null: none
     std::string help;                            // not empty: only help was requested
 };
 

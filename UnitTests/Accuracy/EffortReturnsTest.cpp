@@ -24,10 +24,10 @@ TEST(EffortReturns, ALandingIsNone) {
     uint32_t returns = 0;
     for (int i = 0; i < 600; ++i) {
         world.Step();
-        const int effort = world.System().Report().mostEffort[0].substeps;
+        const int effort = world.Ours("").Report().mostEffort[0].substeps;
         rises += effort > last;
         last = effort;
-        returns += efforts.Sample(world.System());
+        returns += efforts.Sample(world.Ours(""));
     }
     EXPECT_GT(rises, 10);
     EXPECT_EQ(returns, 0u);
@@ -43,11 +43,11 @@ TEST(EffortReturns, ARiseWithTheSameContactsIsOne) {
     world.Add({.shape = BoxOf(0.5, 0.5, 0.5), .position = {0, 1.5, 0}, .mass = 100'000});
     EffortReturns efforts;
     const auto returnsWith = [&](float target) {
-        EXPECT_TRUE(world.Bodies().SetPenetrationTarget(light, target));
+        EXPECT_TRUE(world.Ours("").Bodies().SetPenetrationTarget(light, target));
         uint32_t returns = 0;
         for (int i = 0; i < 300; ++i) {
             world.Step();
-            returns += efforts.Sample(world.System());
+            returns += efforts.Sample(world.Ours(""));
         }
         return returns;
     };

@@ -16,7 +16,7 @@ TEST(LabRecorder, ShowsTheFirstWorldOfARun) {
         const BodyId moving = world.Add({.shape = SphereOf(0.5), .linearVelocity = {1, 0, 0}});
         world.Steps(0.5);
         world.Add({.shape = BoxOf(1, 1, 1), .position = {0, 5, 0}});
-        EXPECT_TRUE(world.Bodies().Remove(moving));
+        EXPECT_TRUE(world.Ours("").Bodies().Remove(moving));
         world.Steps(0.5);
     }
     LabWorld other(run);

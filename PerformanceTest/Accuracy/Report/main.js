@@ -17,6 +17,7 @@ const FAMILIES = [
   { name: 'no_trees', label: 'no trees of joints', color: '#b0499b' },
   { name: 'fixed', label: 'fixed effort', color: '#4a5563' },
   { name: 'target', label: 'AccuracyTarget', color: '#c8102e' },
+  ...(data.peer ? [{ name: data.peer.family, label: data.peer.engine, color: '#7a5c00' }] : []),
 ].filter(({ name }) => data.scenes.some(({ runs }) => runs.some(({ family }) => family === name)));
 // Where the labels of presets stand, so that those of runs side by side do not cover each other.
 const PRESETS = {
@@ -24,7 +25,9 @@ const PRESETS = {
   balanced: { text: () => 'default', dy: -14, fontWeight: 'bold' },
   accurate: { text: () => 'accurate', dy: 15 },
   reference: { text: () => 'reference', textAnchor: 'end', dx: 6, dy: -14 },
+  default: { text: ({ engine }) => firstWordOf(engine), dy: 15 },  // another engine's
 };
+const firstWordOf = (text) => text.split(' ')[0];
 const colorOf = (family) => FAMILIES.find(({ name }) => name === family).color;
 
 const element = (tag, content, properties = {}) => {
@@ -36,7 +39,8 @@ const element = (tag, content, properties = {}) => {
 function peerLines(scene, metric) {
   const peer = data.peers?.scenes?.[scene.name];
   if (!peer?.[metric]) return [];
-  return peer[metric].flatMap((error, i) => (error > 0 ? [{ error, engine: data.peers.engines[i], cost: peer.cost[i] }] : []));
+  const isMeasured = (engine) => scene.runs.some((run) => run.engine && firstWordOf(run.engine) === firstWordOf(engine));
+  return peer[metric].flatMap((error, i) => (error > 0 && !isMeasured(data.peers.engines[i]) ? [{ error, engine: data.peers.engines[i], cost: peer.cost[i] }] : []));
 }
 
 function draw(card, scene) {
@@ -83,6 +87,7 @@ function makeCard(scene) {
     element('div', [element('h2', scene.name), choice], { className: 'top' }),
     element('p', scene.what),
     element('p', '', { className: 'what-error' }),
+    scene.peer_lacks ? element('p', `Not run in ${data.peer.engine}, where the lab has no counterpart of ${scene.peer_lacks}`, { className: 'lacking' }) : '',
     conditions.length > 0 ? element('p', `The default fails: ${conditions.join('; ')}`, { className: 'failed' }) : '',
     element('div', '', { className: 'plot' }),
   ], { className: 'scene', id: scene.name });

@@ -9,15 +9,21 @@ function number(value) {
   return value === 0 || Math.abs(value) >= 0.001 ? plain.format(value) : value.toExponential(2);
 }
 
+// A run of another engine has the engine's name.
 function titleOf(run, metric) {
+  const setting = run.engine
+    ? [`${run.engine}${run.preset ? ', its default' : ''}`, `dt 1/${run.rate} s, ${run.velocity_iterations} iterations`]
+    : [
+      `${run.preset ? `${run.preset === 'balanced' ? 'balanced (the default)' : run.preset}: ` : ''}${run.family}`,
+      `dt 1/${run.rate} s, ${run.substeps} substeps`,
+      `${run.velocity_iterations} velocity, ${run.position_iterations} position iterations`,
+    ];
   const lines = [
-    `${run.preset ? `${run.preset === 'balanced' ? 'balanced (the default)' : run.preset}: ` : ''}${run.family}`,
-    `dt 1/${run.rate} s, ${run.substeps} substeps`,
-    `${run.velocity_iterations} velocity, ${run.position_iterations} position iterations`,
+    ...setting,
     `${metric} ${number(errorOf(run, metric))}${run.blew_up ? ' (blew up)' : ''}`,
     `${number(run.us_per_second)} µs a second (of ${run.timed_runs})`,
-    `${number(run.traversals_per_second)} traversals a second`,
   ];
+  if (!run.engine) lines.push(`${number(run.traversals_per_second)} traversals a second`);
   if (run.failed_conditions.length > 0) lines.push(`fails: ${run.failed_conditions.join('; ')}`);
   lines.push(run.recording ? 'click: plays its recording' : `to record it: --record "${run.setting}"`);
   return lines.join('\n');
@@ -61,6 +67,7 @@ export function drawnOf(scene, { cost, metric, peers = [] }) {
       error: kind === 'blew up' ? top : kind === 'exact' ? bottom : error,
       kind,
       family: run.family,
+      engine: run.engine,
       preset: run.preset,
       recording: run.recording ?? null,
       title: titleOf(run, metric),
@@ -70,7 +77,7 @@ export function drawnOf(scene, { cost, metric, peers = [] }) {
   const costs = points.map((point) => point.cost);
   return {
     points,
-    envelope: envelopeOf(points),
+    envelope: envelopeOf(points.filter(({ engine }) => !engine)),
     curves: families.map((family) => ({ family, points: envelopeOf(points.filter((point) => point.family === family)) })),
     top,
     bottom,

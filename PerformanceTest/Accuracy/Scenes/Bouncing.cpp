@@ -73,7 +73,7 @@ void BouncingField(LabRun& run) {
     const int steps = run.Steps(20);
     for (int i = 0; i < steps; ++i) {
         world.Step();
-        energy = world.System().GetEnergy() - rest;
+        energy = world.Energy() - rest;
         squares += (energy / reference - 1) * (energy / reference - 1);
         most = std::max(most, energy / reference);
     }

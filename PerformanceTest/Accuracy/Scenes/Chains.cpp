@@ -14,14 +14,14 @@ constexpr Influences kJoints{.joints = true};
 void HeavyChain(LabRun& run) {
     LabWorld world(run);
     const Chain chain = AddChain(world, 16, run.parameter);
-    const double start = world.System().GetEnergy();
+    const double start = world.Energy();
     // Energy is from where the ball hangs lowest.
     const double scale = run.parameter * kGravity * chain.length;
     double stretch = 0, rise = 0;
     for (int i = run.Steps(run.Seconds(10, 5)); i > 0; --i) {
         world.Step();
         stretch = std::max(stretch, world.SumOfGaps() / chain.length);
-        rise = std::max(rise, (world.System().GetEnergy() - start) / scale);
+        rise = std::max(rise, (world.Energy() - start) / scale);
     }
     run.Error("stretch", stretch);
     run.Error("energy_rise", rise);

@@ -59,7 +59,7 @@ void TallStack(LabRun& run) {
     double asleepAfter = -1;
     for (int i = run.Steps(run.Seconds(60, 10)); i > 0 && asleepAfter < 0; --i) {
         world.Step();
-        if (world.System().Report().awakeBodies == 0) asleepAfter = world.Time();
+        if (world.AwakeBodies() == 0) asleepAfter = world.Time();
     }
     double drift = 0;
     for (size_t i = 0; i < boxes.size(); ++i) {

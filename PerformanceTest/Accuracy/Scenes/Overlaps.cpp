@@ -43,7 +43,7 @@ void OverlappingPyramid(LabRun& run) {
         meter.Step(run.Dt());
         fastest = std::max(fastest, world.FastestBody());
     }
-    const double limit = world.System().Settings().contactPushSpeed;
+    const double limit = SystemSettings{}.contactPushSpeed;
     run.Error("exit_speed", fastest / limit);
     run.Error("motion", meter.fastest / limit);
     run.Require(fastest <= limit, "exit speed at most contactPushSpeed");
@@ -84,6 +84,7 @@ void SealedBox(LabRun& run) {
 void Coincident(LabRun& run) {
     const int count = static_cast<int>(run.parameter);
     LabWorld world(run, kNoGravity);
+    const PhysicsSystem& ours = world.Ours("its pairs and the memory that it uses");
     const ShapePtr ball = SphereOf(0.5);
     std::vector<BodyId> balls;
     for (int i = 0; i < count; ++i) balls.push_back(world.Add({.shape = ball}));
@@ -93,7 +94,7 @@ void Coincident(LabRun& run) {
     for (int i = run.Steps(seconds); i > 0; --i) {
         world.Step();
         fastest = std::max(fastest, world.FastestBody());
-        pairs = std::max(pairs, double(world.System().Report().pairs));
+        pairs = std::max(pairs, double(ours.Report().pairs));
     }
     std::vector<Position> places;
     for (const BodyId id : balls) places.push_back(world.At(id));
@@ -104,7 +105,7 @@ void Coincident(LabRun& run) {
             overlaps = i != j && (places[i] - places[j]).squaredNorm() < 0.9 * 0.9;
         overlapping += overlaps;
     }
-    const double bytes = static_cast<double>(world.System().MemoryUsed()) / count;
+    const double bytes = static_cast<double>(ours.MemoryUsed()) / count;
     run.Error("overlapping", overlapping / count);
     run.Figure("fastest_m_s", fastest);
     run.Figure("most_pairs", pairs);

@@ -17,7 +17,7 @@ struct Swing {
 
 // `gap` measures how far the joint is open.
 Swing Watch(LabRun& run, LabWorld& world, BodyId body, double arm, FunctionRef<double()> gap) {
-    const double start = world.System().GetEnergy(), scale = world.Bodies().GetMass(body) * kGravity * arm;
+    const double start = world.Energy(), scale = world.Bodies().GetMass(body) * kGravity * arm;
     Swing swing;
     Crossings crossings;
     for (int i = run.Steps(10); i > 0; --i) {
@@ -25,7 +25,7 @@ Swing Watch(LabRun& run, LabWorld& world, BodyId body, double arm, FunctionRef<d
         swing.end = world.At(body);
         crossings.Sample(world.Time(), swing.end.x());
         swing.gap = std::max(swing.gap, gap());
-        swing.energyDrift = std::max(swing.energyDrift, std::abs(world.System().GetEnergy() - start) / scale);
+        swing.energyDrift = std::max(swing.energyDrift, std::abs(world.Energy() - start) / scale);
     }
     swing.period = crossings.Period().value_or(0);
     return swing;

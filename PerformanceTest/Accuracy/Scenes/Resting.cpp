@@ -58,6 +58,7 @@ void Weight(LabRun& run) {
     LabWorld world(run, kDown, [](SystemSettings& settings) {
         settings.accuracy.penetration = std::numeric_limits<float>::infinity();
     });
+    const PhysicsSystem& ours = world.Ours("the forces of contacts");
     world.AddFloor();
     std::vector<BodyId> balls;
     for (int i = 0; i < kBalls; ++i)
@@ -72,7 +73,7 @@ void Weight(LabRun& run) {
     std::vector<double> force(kBalls, 0);
     for (int i = 0; i < 10; ++i) {
         world.Step(dt);
-        world.System().VisitContacts([&](const ContactView& contact) {
+        ours.VisitContacts([&](const ContactView& contact) {
             double impulse = 0;
             for (const ContactView::Point& point : contact.points) impulse += point.impulse;
             // Interface k is below ball k.

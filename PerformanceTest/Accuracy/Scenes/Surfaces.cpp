@@ -104,7 +104,7 @@ void Thin(LabRun& run) {
     }
     for (int i = run.Steps(run.Seconds(30, 10)); i > 0; --i) {
         world.Step();
-        if (world.System().Report().awakeBodies == 0) break;
+        if (world.AwakeBodies() == 0) break;
     }
     double lost = 0, awake = 0;
     for (const BodyId id : bodies) {

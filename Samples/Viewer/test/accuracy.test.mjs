@@ -112,6 +112,17 @@ test('each family has its own curve', () => {
   assert.deepEqual(envelopeOf([]), []);
 });
 
+test('runs in another engine have a curve, and are in no envelope', () => {
+  const peer = { engine: 'Bullet 3.24', family: 'bullet', velocity_iterations: 10, traversals_per_second: null };
+  const runs = [run(100, 0.2), run(50, 0.01, { ...peer, preset: 'default' }), run(40, 0.1, { ...peer, rate: 30 })];
+  const drawn = drawnOf({ runs }, { cost: 'us_per_second', metric: 'way' });
+  assert.deepEqual(drawn.envelope.map(({ cost }) => cost), [100]);
+  assert.deepEqual(drawn.curves.map(({ family, points }) => [family, points.length]), [['soft', 1], ['bullet', 2]]);
+  assert.match(drawn.points[1].title, /^Bullet 3\.24, its default\ndt 1\/60 s, 10 iterations\nway 0\.01\n50 µs a second \(of 5\)\n/);
+  assert.match(drawn.points[2].title, /^Bullet 3\.24\ndt 1\/30 s/);
+  assert.equal(drawnOf({ runs }, { cost: 'traversals_per_second', metric: 'way' }).points.length, 1);
+});
+
 test('lines of other engines that are near each other share a label', () => {
   const peers = [{ error: 1, engine: 'Jolt 5.5.1' }, { error: 0.01, engine: 'Box3D 0.2.0' }, { error: 1.1, engine: 'Bullet 3.24' }];
   assert.deepEqual(labelsOf(peers, 1e4), [{ error: 0.01, label: 'Box3D' }, { error: 1, label: 'Jolt, Bullet' }]);
