@@ -66,14 +66,15 @@ FULCRUM_FORCE_INLINE Real PullSpeed(const Real& error, const JointSolveSettings&
 }
 
 // Marks what is connected to something that does not move, directly or by other joints, as near to it: what the pull
-// holds up there loses the velocity that gravity gives it (BodyState::nearFixed).
+// holds up there loses the velocity that gravity gives it (BodyState::nearFixed). guided: mask of the lanes in which a
+// body has locked translations, which count as such.
 template <class Batch>
-inline void MarkNearFixed(const Batch& batch, BodyState* pseudo) {
+inline void MarkNearFixed(const Batch& batch, BodyState* pseudo, uint32_t guided = 0) {
+    const uint32_t still = (batch.fixedA & ~batch.kinematicA) | (batch.fixedB & ~batch.kinematicB) | guided;
     for (int lane = 0; lane < batch.count; ++lane) {
         const bool fixedA = batch.fixedA >> lane & 1u, fixedB = batch.fixedB >> lane & 1u;
-        const bool isStatic = ((batch.fixedA & ~batch.kinematicA) | (batch.fixedB & ~batch.kinematicB)) >> lane & 1u;
         BodyState &a = pseudo[batch.bodyA[lane]], &b = pseudo[batch.bodyB[lane]];
-        if (!isStatic && !(!fixedA && a.nearFixed > 0) && !(!fixedB && b.nearFixed > 0)) continue;
+        if (!(still >> lane & 1u) && !(!fixedA && a.nearFixed > 0) && !(!fixedB && b.nearFixed > 0)) continue;
         if (!fixedA) a.nearFixed = 1;
         if (!fixedB) b.nearFixed = 1;
     }

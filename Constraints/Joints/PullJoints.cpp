@@ -116,13 +116,23 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     }
 }
 
+// Mask of the lanes in which a body has locked translations.
+template <int N>
+uint32_t LocksTranslation(const JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    const auto locksOf = [](const Vec3<Real>& mass) {
+        return (Min(Min(mass.x(), mass.y()), mass.z()) <= Real(0.0f)).ToBits();
+    };
+    return (locksOf(batch.massA.mass) & ~batch.fixedA) | (locksOf(batch.massB.mass) & ~batch.fixedB);
+}
+
 }  // namespace
 
 template <int N>
 void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings) {
     if (settings.firstPass)
         for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].pulled = Wide<N>(0.0f);
-    MarkNearFixed(batch, pseudo);
+    MarkNearFixed(batch, pseudo, LocksTranslation(batch));
     ChangeVelocities<N>(batch, pseudo, [&](auto& a, auto& b) {
         batch.follows = Follows<Wide<N>>(batch.follows, a, b, settings);
         WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {

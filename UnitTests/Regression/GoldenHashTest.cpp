@@ -17,7 +17,7 @@ constexpr uint64_t kGoldenHash = 0x5900fec7f3525decull;
 constexpr uint64_t kGoldenHashOfJoints = 0x9e54aa5dc5008d7eull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x593636f81a286878ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x022a9e2488d02425ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x0bf175dd4f3f8642ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7baa250c712170ccull;
 
 std::string Hex(uint64_t number) {
     char text[24];
