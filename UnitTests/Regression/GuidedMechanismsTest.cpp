@@ -2,6 +2,7 @@
 // nothing but rounding errors may remain where the axes are locked: these once counted as mobility, and weightless
 // mechanisms at rest exploded.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <algorithm>
@@ -45,7 +46,7 @@ float FastestOf(Kind kind, uint32_t seed) {
 
 TEST(GuidedMechanisms, StayAtRest) {
     for (const Kind kind : {Kind::Fixed, Kind::Hinge, Kind::Slider})
-        for (uint32_t seed = 1; seed <= 200; ++seed)
+        for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(200)); ++seed)
             // Rounding of anchors is corrected, where little mobility is left by much motion.
             EXPECT_LT(FastestOf(kind, seed), 0.05f) << static_cast<int>(kind) << ", seed " << seed;
 }

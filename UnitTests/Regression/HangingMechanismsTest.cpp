@@ -1,6 +1,7 @@
 // Mechanisms that hang from a static body and touch nothing. Where a joint or a limit is far apart, bodies are pulled
 // by pseudo-velocities, which lifts them; the velocity that gravity gives them meanwhile must not grow.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
+#include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <algorithm>
@@ -70,7 +71,7 @@ void HardlyGainEnergy(Kind kind, double most, int mostAboveOne) {
     for (const int substeps : {4, 16}) {
         double worst = 0;
         int above = 0;
-        for (uint32_t seed = 1; seed <= 200; ++seed) {
+        for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(200)); ++seed) {
             const double gain = LargestGain(kind, substeps, seed);
             worst = std::max(worst, gain);
             above += gain > 1;
