@@ -14,8 +14,8 @@ struct alignas(64) BodyState {
     // First row: the velocity.
     float linearVelocity[3] = {0, 0, 0};   // m/s, of the center of mass
     float angularVelocity[3] = {0, 0, 0};  // rad/s, world axes
-    // For pseudo-velocities: 1 if a contact with a static or kinematic body acts, or joints connect it to a static one,
-    // see PullContacts and PullJoints.
+    // For pseudo-velocities: 1 if a contact with a static or kinematic body acts (PullContacts), or joints connect it
+    // to a static one or one with locked translations (MarkNearFixed).
     float nearFixed = 0;
     float marks = 0;  // flags of the stages, not used by constraints
     // Second row: change of pose since the start of the step.
