@@ -74,7 +74,8 @@ inline void MarkNearFixed(const Batch& batch, BodyState* pseudo, uint32_t guided
     for (int lane = 0; lane < batch.count; ++lane) {
         const bool fixedA = batch.fixedA >> lane & 1u, fixedB = batch.fixedB >> lane & 1u;
         BodyState &a = pseudo[batch.bodyA[lane]], &b = pseudo[batch.bodyB[lane]];
-        if (!(still >> lane & 1u) && !(!fixedA && a.nearFixed > 0) && !(!fixedB && b.nearFixed > 0)) continue;
+        const bool isNear = (still >> lane & 1u) || (!fixedA && a.nearFixed > 0) || (!fixedB && b.nearFixed > 0);
+        if (!isNear) continue;
         if (!fixedA) a.nearFixed = 1;
         if (!fixedB) b.nearFixed = 1;
     }

@@ -53,20 +53,12 @@ private:
 };
 
 std::string One() { return "1.0"; }
-const Peer kFalling{
-    "falling",
-    "Falling",
-    One,
-    3,
-    [](const PhysicsSystem& ours, int) -> std::unique_ptr<PeerWorld> { return std::make_unique<Falling>(ours, 1e9); },
-    nullptr};
-const Peer kLost{
-    "lost",
-    "Lost",
-    One,
-    3,
-    [](const PhysicsSystem& ours, int) -> std::unique_ptr<PeerWorld> { return std::make_unique<Falling>(ours, 5); },
-    nullptr};
+template <int kLostAfter>  // s
+std::unique_ptr<PeerWorld> CreateFalling(const PhysicsSystem& ours, int) {
+    return std::make_unique<Falling>(ours, kLostAfter);
+}
+const Peer kFalling{"falling", "Falling", One, 3, CreateFalling<1'000'000'000>, nullptr};
+const Peer kLost{"lost", "Lost", One, 3, CreateFalling<5>, nullptr};
 
 RunRecord MeasureIn(const Peer& peer, const char* scene, int rate = 60) {
     const Setting setting{.rate = rate,
