@@ -17,6 +17,7 @@ void FindFace(const SupportPair& pair, bool ofA, const Vector3& direction, Suppo
     if (ofA) return pair.a.FindSupportingFace(direction, face);
     pair.b.FindSupportingFace(pair.DirectionInB(direction), face);
     for (int i = 0; i < face.count; ++i) face.vertices[i] = pair.PointOfB(face.vertices[i]);
+    if (face.hasAhead) face.ahead = pair.PointOfB(face.ahead);
     if (face.count > 2) face.normal = pair.rotation * face.normal;
 }
 
@@ -59,6 +60,11 @@ struct FaceClip {
         clipped.Clip(
             incident.count, [&](int i) { return incident.vertices[i]; }, sides, reference.count, slop);
     }
+    bool IsInside(const Vector3& point, float slop) const {
+        for (int i = 0; i < reference.count; ++i)
+            if (Dot(sides[i].normal, point) - sides[i].offset > slop) return false;
+        return true;
+    }
     uint32_t FeatureOf(int i, bool referenceOfA) const {
         return clipped.FeatureOf(i, SupportingFaceNames{incident}, SupportingFaceNames{reference}, referenceOfA);
     }
@@ -91,13 +97,19 @@ Built BuildFromFace(const SupportPair& pair, const ReferenceSide& reference, con
     }
     int chosen[4];
     manifold.pointCount = clipped.ChooseFourWithin(tolerances.reach, normal, tolerances.prefer, chosen);
+    const auto pointAt = [&](const Vector3& x, float separation, uint32_t feature) {
+        const Vector3 onCore = reference.ofA ? Vector3(x - normal * separation) : x;
+        return ManifoldPoint{onCore + manifold.normal * pair.a.ConvexRadius(), separation - pair.RadiusSum(), feature};
+    };
     for (int i = 0; i < manifold.pointCount; ++i) {
         const int c = chosen[i];
-        const Vector3& x = clipped[c];
-        const float separation = clipped.Separation(c);
-        const Vector3 onCore = reference.ofA ? Vector3(x - normal * separation) : x;
-        manifold.points[i] = {onCore + manifold.normal * pair.a.ConvexRadius(), separation - pair.RadiusSum(),
-                              clip.FeatureOf(c, reference.ofA)};
+        manifold.points[i] = pointAt(clipped[c], clipped.Separation(c), clip.FeatureOf(c, reference.ofA));
+    }
+    if (incident.hasAhead && manifold.pointCount == 1 && clip.IsInside(incident.ahead, tolerances.prefer)) {
+        const float separation = Dot(normal, Vector3(incident.ahead - reference.face.vertices[0]));
+        if (separation <= tolerances.reach)
+            manifold.points[manifold.pointCount++] =
+                pointAt(incident.ahead, separation, VertexFeature(!reference.ofA, incident.aheadName));
     }
     return built;
 }

@@ -78,10 +78,12 @@ int ChooseOfFace(const Polyhedron& core, const Vector3& down, const ContactToler
 void AddSupportingFace(const ConvexShape& shape, const Vector3& down, float outside, float least, NearVertices& near) {
     SupportingFace face;
     shape.FindSupportingFace(down, face);
-    for (int i = 0; i < face.count; ++i) {
-        const float depth = Dot(down, face.vertices[i]);
-        if (depth >= least) near.Add(face.vertices[i], face.names[i], outside - depth - shape.ConvexRadius());
-    }
+    const auto add = [&](const Vector3& vertex, uint16_t name) {
+        const float depth = Dot(down, vertex);
+        if (depth >= least) near.Add(vertex, name, outside - depth - shape.ConvexRadius());
+    };
+    for (int i = 0; i < face.count; ++i) add(face.vertices[i], face.names[i]);
+    if (face.hasAhead) add(face.ahead, face.aheadName);
 }
 
 }  // namespace

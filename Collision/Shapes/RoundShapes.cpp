@@ -88,10 +88,13 @@ void TaperedCapsule::FindSupportingFace(const Vector3& direction, SupportingFace
     const Vector3 line = point - onBall;
     const float lean = Dot(direction, line), limit = kLean * std::fabs(ballY_ - pointY_);
     face.count = 0;
+    face.hasAhead = false;
     // If the ball is tiny, the core is a segment like a capsule's.
     const bool wholeLine = std::fabs(lean) <= limit || ballRadius_ <= 1e-3f * convexRadius_;
     if (wholeLine || lean <= 0) face.Add(onBall, 0);
+    else face.AddAhead(onBall, 0);
     if (wholeLine || lean > 0) face.Add(point, 1);
+    else face.AddAhead(point, 1);
 }
 
 Result<std::shared_ptr<const Cylinder>> Cylinder::Create(float halfHeight, float radius, float convexRadius) {

@@ -13,10 +13,19 @@ struct SupportingFace {
     Vector3 vertices[kMaxVertices];  // of the core, in the shape's center frame, m
     uint16_t names[kMaxVertices];    // vertex ids, the same from step to step while the same feature touches
     Vector3 normal;                  // unit, outwards; of a face only
+    // Of a point: the other end of the edge that faces the direction once the shape has tipped over, if it has one.
+    bool hasAhead = false;
+    uint16_t aheadName;
+    Vector3 ahead;
 
     void Add(const Vector3& vertex, int name) {
         vertices[count] = vertex;
         names[count++] = static_cast<uint16_t>(name);
+    }
+    void AddAhead(const Vector3& vertex, int name) {
+        hasAhead = true;
+        ahead = vertex;
+        aheadName = static_cast<uint16_t>(name);
     }
 };
 

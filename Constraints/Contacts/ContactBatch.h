@@ -64,9 +64,9 @@ struct ContactBatch {
     uint16_t gentle = 0;    // lanes whose penetration recovery is limited to RareContactData::gentlePushSpeed
     // Lanes whose bodies moved so far relative to each other that they should collide again.
     uint16_t rotated = 0, slid = 0;
-    // Lanes with a velocity error above ContactSolveSettings::mostError before the last velocity iteration; not kept if
-    // B is static or kinematic.
-    uint16_t unsolved = 0;
+    // Lanes with a velocity error above ContactSolveSettings::mostError before the last velocity iteration, and above
+    // hitError, if B is static or kinematic.
+    uint16_t unsolved = 0, hits = 0;
     // How often the bodies collided in this step: they collide again after as many times the relative motion for which
     // one manifold is valid (UpdateSeparations).
     uint8_t collisions[N];
@@ -137,6 +137,7 @@ struct ContactSolveSettings {
     // The largest velocity error of a normal row with which a contact counts as solved: 1/s, times inverseSoftDepth,
     // but at least leastError, m/s.
     float mostError = std::numeric_limits<float>::infinity(), leastError = 0;
+    float hitError = std::numeric_limits<float>::infinity();  // likewise, above which it counts as a hit
     // Restitution, see BounceContacts:
     float restitutionSpeed = 0;      // m/s: restitution threshold, slower impacts do not bounce
     float* unconstrained = nullptr;  // of all bodies, eight floats each: velocities without the impulses that the next

@@ -150,7 +150,7 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     using Real = Wide<N>;
     // Where they are used: after velocity iterations between two dynamic bodies, and for contacts that are iterated
     // alone.
-    constexpr bool kFindsErrors = (kPass != Pass::Relax && !kFixedB) || N == 1;
+    constexpr bool kFindsErrors = kPass != Pass::Relax || N == 1;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Velocity>(batch, states, twists);
@@ -240,7 +240,9 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
     }
     SweepNormals<kPass>(batch, settings, stiffer, speed, total);
     NormalImpulses<Real> changes;
-    [[maybe_unused]] WideMask<N> isUnsolved = zero > zero;
+    [[maybe_unused]] WideMask<N> isUnsolved = zero > zero, isHit = isUnsolved;
+    [[maybe_unused]] const Real hitError =
+        Max(Real(settings.hitError) / batch.inverseSoftDepth, Real(settings.leastError));
     [[maybe_unused]] const Real mostError =
         Max(Real(settings.mostError) / batch.inverseSoftDepth, Real(settings.leastError));
     for (int i = 0; i < batch.pointCount; ++i) {
@@ -248,9 +250,15 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         const Real change = total[i] - row.impulse;
         changes.Add(row, change);
         row.impulse = total[i];
-        if constexpr (kFindsErrors) isUnsolved = isUnsolved | (Abs(change) > row.inverseResponse * mostError);
+        if constexpr (kFindsErrors) {
+            isUnsolved = isUnsolved | (Abs(change) > row.inverseResponse * mostError);
+            if constexpr (kFixedB) isHit = isHit | (Abs(change) > row.inverseResponse * hitError);
+        }
     }
-    if constexpr (kFindsErrors) batch.unsolved = static_cast<uint16_t>(isUnsolved.ToBits() & LanesOf(batch));
+    if constexpr (kFindsErrors) {
+        batch.unsolved = static_cast<uint16_t>(isUnsolved.ToBits() & LanesOf(batch));
+        batch.hits = static_cast<uint16_t>(isHit.ToBits() & LanesOf(batch));
+    }
 
     Vec3<Real> force = batch.normal * changes.sum, torque = NormalTorque(batch, changes.sumA, changes.sumB);
     if constexpr (kPass != Pass::Push)

@@ -334,7 +334,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     batch.tangent2 = t2;
     batch.friction = Min(head[Record::kFriction], Real(kMostFriction));
     batch.twistRadius = head[Record::kTwistRadius];
-    batch.rotated = batch.slid = batch.unsolved = batch.gentle = 0;
+    batch.rotated = batch.slid = batch.unsolved = batch.hits = batch.gentle = 0;
     std::fill_n(batch.collisions, N, uint8_t{1});
     batch.hasCollidedAgain = false;
     batch.inverseSoftDepth = Real(1.0f / kSoftFraction) / GatherInnerRadius<N>(batch.bodyA, batch.bodyB, bodies.poses);

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace fulcrum {
@@ -29,7 +30,7 @@ bool Overlap(const ColliderStore& colliders, const Pair& pair) {
 void MakeContact(const CollideStores& stores, const PairView& view, uint32_t index, const Manifold& manifold,
                  WorkerFindings& findings) {
     NewContact made;
-    WriteManifold(stores, view, manifold, made.contact, made.record);
+    WriteManifold(stores, view, manifold, made.contact, made.record, findings);
     if (view.pair.pointCount == 0) return;
     made.contact.reference = view.bInA;
     made.contact.pair = index;
@@ -40,6 +41,7 @@ void MakeContact(const CollideStores& stores, const PairView& view, uint32_t ind
 PairChange LookAtContact(const CollideStores& stores, uint32_t index, PairShapes shapes, const RelativePose& bInA,
                          WorkerFindings& findings) {
     const Pair& pair = stores.pairs.pairs[index];
+    if (IsFoundAgain(stores, pair, findings)) return PairChange::None;
     if (pair.pointCount > 0) NoteOverlap(stores, index, shapes, bInA, findings);
     const PairChange change = NoteTouching(stores, index, findings);
     if (pair.pointCount == 0) return PairChange::Ended;  // also if the listener had ignored it
@@ -68,9 +70,11 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     const float reachAhead = reach.WithRotation(stores, pair, shapes);
     if (pair.surface) return CollideWithSurface(stores, changes, index, reachAhead, findings);
     const PairView view = ViewPair(stores, index);
-    if (pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact])) {
+    const bool hardlyMoved = pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact]);
+    if (hardlyMoved && !stores.IsSecondPass()) {
         ++findings.kept;
     } else {
+        if (hardlyMoved) --findings.kept;  // counted by the first pass
         Manifold manifold;
         FindManifold(stores, view, reachAhead, manifold, findings);
         if (pair.contact == PairStore::kNone) {
@@ -80,7 +84,7 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
         PairContact& contact = stores.pairs.contacts[pair.contact];
         if (TurnsFromOthers(stores, view, manifold))
             findings.turnedNormals.push_back({pair.bodyA, pair.bodyB, NormalOf(stores, pair)});
-        WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair));
+        WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair), findings);
         contact.reference = view.bInA;
     }
     return LookAtContact(stores, index, shapes, view.bInA, findings);
@@ -161,6 +165,15 @@ void AddNewContacts(const CollideStores& stores, PairUpdates& updates, const Ste
     }
 }
 
+// An order that does not depend on the threads.
+bool IsLarger(const Deflection& a, const Deflection& b) {
+    const auto key = [](const Deflection& d) {
+        return std::tuple(d.size, d.otherBody, d.linear.x(), d.linear.y(), d.linear.z(), d.angular.x(), d.angular.y(),
+                          d.angular.z());
+    };
+    return key(a) > key(b);
+}
+
 // Where a normal turned, the contacts of the same two bodies that pressed the opposite way are not warm started either:
 // nothing balances them now. A child of a compound that a thin floor pushes out on both sides may turn to the other
 // side.
@@ -184,6 +197,103 @@ void ForgetOpposed(const CollideStores& stores, std::span<WorkerFindings> worker
     }
 }
 
+// Lists of so many deflections, and of so many pairs of deflected bodies, are kept once there is one.
+constexpr size_t kFewDeflections = 32, kFewDeflectedPairs = 256;
+
+// The largest deflection of each body, to updates.deflections. Returns their indices by body.
+std::span<const uint32_t> MergeDeflections(const CollideStores& stores, PairUpdates& updates,
+                                           const StepWorkers& workers) {
+    updates.deflections.clear();
+    std::span<uint32_t> deflectionOf;
+    size_t count = 0;
+    for (const WorkerFindings& findings : workers.findings) count += findings.deflections.size();
+    if (count == 0) return deflectionOf;
+    // Any worker may find all of as many in a later step.
+    updates.deflections.reserve(std::max(count, kFewDeflections));
+    for (WorkerFindings& findings : workers.findings) findings.deflections.reserve(std::max(count, kFewDeflections));
+    for (WorkerFindings& findings : workers.findings) {
+        for (const Deflection& found : findings.deflections) {
+            if (deflectionOf.empty()) {
+                deflectionOf = workers.scratch.Allocate<uint32_t>(stores.bodies.Size());
+                std::ranges::fill(deflectionOf, PairStore::kNone);
+            }
+            uint32_t& index = deflectionOf[found.body];
+            if (index == PairStore::kNone) {
+                index = static_cast<uint32_t>(updates.deflections.size());
+                updates.deflections.push_back(found);
+            } else if (IsLarger(found, updates.deflections[index])) {
+                updates.deflections[index] = found;
+            }
+        }
+        findings.deflections.clear();
+    }
+    return deflectionOf;
+}
+
+// Whether the contacts of a pair are to be found again: not of one that leaves the step, nor where the listener ignores
+// them, nor of the one that deflects its bodies.
+bool MayCollideAgain(const CollideStores& stores, std::span<const PairChange> changes, uint32_t index) {
+    const PairStore& pairs = stores.pairs;
+    const auto isByOther = [&](uint32_t body, uint32_t otherBody) {
+        const Deflection* deflection = stores.DeflectionOf(body);
+        return deflection && deflection->otherBody != otherBody;
+    };
+    const Pair& pair = pairs.pairs[index];
+    if (!isByOther(pair.bodyA, pair.bodyB) && !isByOther(pair.bodyB, pair.bodyA)) return false;
+    if (!pairs.active.Contains(index) || pairs.pairs[index].isMore) return false;
+    if (changes[index] == PairChange::Dead || changes[index] == PairChange::WakesOther) return false;
+    for (; index != PairStore::kNone; index = pairs.MoreOf(index))
+        if (pairs.pairs[index].pointCount > 0 && !pairs.pairs[index].touching) return false;
+    return true;
+}
+
+// The change in this step of a pair that was collided twice.
+PairChange Combine(PairChange first, PairChange second) {
+    const bool isBackAsBefore = (first == PairChange::Ended && second == PairChange::Began) ||
+                                (first == PairChange::Began && second == PairChange::Ended);
+    if (isBackAsBefore) return PairChange::None;
+    return second == PairChange::None ? first : second;
+}
+
+// Collides the pairs of deflected bodies again, for the motion that they will have.
+void CollideDeflected(CollideStores stores, PairUpdates& updates, const StepWorkers& workers) {
+    stores.deflectionOf = MergeDeflections(stores, updates, workers);
+    stores.deflections = updates.deflections;
+    if (!stores.IsSecondPass()) return;
+    PairStore& pairs = stores.pairs;
+    Array<uint32_t>& list = updates.deflectedPairs;
+    list.clear();
+    list.reserve(kFewDeflectedPairs);
+    for (const Deflection& deflection : updates.deflections)
+        VisitColliders(stores.bodies, stores.colliders, deflection.body, [&](uint32_t collider) {
+            pairs.VisitOf(collider, [&](uint32_t index) {
+                if (MayCollideAgain(stores, updates.changes, index)) list.push_back(index);
+            });
+        });
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    Array<PairChange>& before = updates.changesBefore;
+    before.clear();
+    before.reserve(kFewDeflectedPairs);
+    const auto visitManifolds = [&](auto&& visit) {
+        for (const uint32_t first : list)
+            for (uint32_t index = first; index != PairStore::kNone; index = pairs.MoreOf(index)) visit(index);
+    };
+    WorkerFindings& counts = workers.findings.front();
+    visitManifolds([&](uint32_t index) {
+        const Pair& pair = pairs.pairs[index];
+        before.push_back(updates.changes[index]);
+        updates.changes[index] = PairChange::None;
+        counts.contacts -= pair.touching;  // counted again
+        counts.points -= pair.touching ? pair.pointCount : 0;
+    });
+    CollideListed(stores, list, updates.changes, workers);
+    AddNewContacts(stores, updates, workers);
+    size_t next = 0;
+    visitManifolds([&](uint32_t index) { updates.changes[index] = Combine(before[next++], updates.changes[index]); });
+    AddMoreManifolds(stores, updates, workers.findings);
+}
+
 void CountContacts(std::span<WorkerFindings> workers, StepReport& report) {
     for (WorkerFindings& f : workers) {
         report.contacts += std::exchange(f.contacts, 0);
@@ -201,6 +311,7 @@ void Collide(const StepContext& step, const BodyStore& bodies, const ColliderSto
     CollideAllActive(stores, updates.changes, workers);
     AddNewContacts(stores, updates, workers);
     AddMoreManifolds(stores, updates, workers.findings);
+    CollideDeflected(stores, updates, workers);
     ForgetOpposed(stores, workers.findings);
     CountContacts(workers.findings, report);
 }
@@ -212,6 +323,7 @@ void CollideActivated(const StepContext& step, const BodyStore& bodies, const Co
     CollideListed(stores, updates.activated, updates.changes, workers);
     AddNewContacts(stores, updates, workers);
     AddMoreManifolds(stores, updates, workers.findings);
+    CollideDeflected(stores, updates, workers);
     ForgetOpposed(stores, workers.findings);
     CountContacts(workers.findings, report);
 }

@@ -25,7 +25,8 @@ int CommonFeatures(const PairStore& pairs, uint32_t index, const Manifold& manif
     return count;
 }
 
-void Write(const CollideStores& stores, const PairView& view, uint32_t index, const SurfaceManifold& contact) {
+void Write(const CollideStores& stores, const PairView& view, uint32_t index, const SurfaceManifold& contact,
+           WorkerFindings& findings) {
     Pair& pair = stores.pairs.pairs[index];
     PairContact& place = stores.pairs.contacts[pair.contact];
     place.triangle = contact.triangle;
@@ -34,7 +35,7 @@ void Write(const CollideStores& stores, const PairView& view, uint32_t index, co
         CombineMaterials(stores.bodies, stores.colliders, stores.pairs, index);
     }
     WriteManifold(stores, {pair, view.shapes, view.bodyBInA, view.bInA}, contact.manifold, place,
-                  stores.pairs.RecordOf(pair));
+                  stores.pairs.RecordOf(pair), findings);
 }
 
 // Motion of the center of the convex piece relative to the surface within the step, m, in that piece's frame.
@@ -81,14 +82,14 @@ void WriteSurfaceManifolds(const CollideStores& stores, const PairView& view, ui
             left.push_back(m);
             continue;
         }
-        Write(stores, view, places[best], found[m]);
+        Write(stores, view, places[best], found[m], findings);
         places[best] = kTaken;
     }
     size_t next = 0;
     std::erase_if(left, [&](uint32_t m) {
         while (next < places.size() && places[next] == kTaken) ++next;
         if (next == places.size()) return false;
-        Write(stores, view, places[next], found[m]);
+        Write(stores, view, places[next], found[m], findings);
         places[next] = kTaken;
         return true;
     });
@@ -118,9 +119,11 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     VisitManifolds(stores.pairs, first, [&](uint32_t index) { touches |= stores.pairs.pairs[index].pointCount > 0; });
     const PairView view = ViewPair(stores, first);
     Array<PairContact>& contacts = stores.pairs.contacts;
-    if (touches && HardlyMoved(view, contacts[view.pair.contact])) {
+    const bool hardlyMoved = touches && HardlyMoved(view, contacts[view.pair.contact]);
+    if (hardlyMoved && !stores.IsSecondPass()) {
         ++findings.kept;
     } else {
+        if (hardlyMoved) --findings.kept;  // counted by the first pass
         FindSurfaceManifolds(stores, view, first, reach, findings);
         WriteSurfaceManifolds(stores, view, first, true, findings);
         for (const uint32_t m : findings.surfaceLeft)
@@ -131,7 +134,8 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     PairChange ofFirst = PairChange::None;
     bool wakes = false;
     VisitManifolds(stores.pairs, first, [&](uint32_t index) {
-        Pair& pair = stores.pairs.pairs[index];
+        const Pair& pair = stores.pairs.pairs[index];
+        if (IsFoundAgain(stores, pair, findings)) return;
         if (pair.pointCount > 0) NoteOverlap(stores, index, view.shapes, view.bInA, findings);
         const PairChange change = NoteTouching(stores, index, findings);
         wakes |= TouchesSleepingBody(stores.bodies, pair);
@@ -155,7 +159,7 @@ void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::sp
     for (const MoreManifold& more : all) {
         const uint32_t index = stores.pairs.AddMore(more.pair);
         updates.changes.resize(std::max(updates.changes.size(), stores.pairs.pairs.size()), PairChange::None);
-        Write(stores, ViewPair(stores, more.pair), index, more.contact);
+        Write(stores, ViewPair(stores, more.pair), index, more.contact, workers.front());
         updates.changes[index] = NoteTouching(stores, index, workers.front());
         if (TouchesSleepingBody(stores.bodies, stores.pairs.pairs[index]))
             updates.changes[more.pair] = PairChange::WakesOther;

@@ -67,6 +67,8 @@ inline uint8_t StiffnessOf(int substeps, int systemSubsteps, float longer) {
 // longer than 1/60 s an error that deepens an overlap by as much in a step. inverseSoftDepth is in quarters of the
 // radius.
 inline float MostVelocityError(float dt) { return 0.02f / std::max(dt, 1.0f / 60); }
+// ContactSolveSettings::hitError for substeps of h seconds: what deepens an overlap by a tenth of the radius in one.
+inline float HitError(float h) { return 0.4f / h; }
 
 // Loads and stiffness change over so many steps of 1/60 s, or longer steps, or over the same time in shorter ones: a
 // load that bounces on its springs would be pumped by springs that stiffen while it rises.
@@ -100,6 +102,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     contacts.slop = s.penetrationSlop;
     contacts.restitutionSpeed = s.restitutionSpeed;
     contacts.mostError = MostVelocityError(step.dt);
+    contacts.hitError = HitError(h);
     contacts.leastError = Length(s.gravity) * step.dt;
     const float frequency = std::min(s.contactFrequency, stiffest);
     contacts.Soften(frequency, std::max(s.contactDampingRatio, LeastDampingRatio(frequency, h)), h, s.contactPushSpeed);

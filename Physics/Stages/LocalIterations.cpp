@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/LocalIterations.h>
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 
 namespace fulcrum {
@@ -34,6 +35,17 @@ uint32_t SecondBody(const ContactBatch<N, kFixedB>& batch, int lane) {
     else return batch.bodyB[lane];
 }
 
+// The index of the first true value from `begin` on; the size if there is none. Few of many are true.
+uint32_t NextTrue(std::span<const bool> values, uint32_t begin) {
+    const void* found = begin < values.size() ? std::memchr(&values[begin], 1, values.size() - begin) : nullptr;
+    return static_cast<uint32_t>(found ? static_cast<const bool*>(found) - values.data() : values.size());
+}
+
+bool AreUneven(const BodyStore& bodies, uint32_t a, uint32_t b) {
+    const float massA = bodies.masses[a].inverseMass, massB = bodies.masses[b].inverseMass;
+    return std::max(massA, massB) >= kLeastMassRatio * std::min(massA, massB);
+}
+
 }  // namespace
 
 LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch) {
@@ -43,6 +55,7 @@ LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, Sc
         most = std::max(most, bodies.masses[body].inverseMass);
     }
     if (most < kLeastMassRatio * least) return;  // no contact will be marked
+    isUneven = scratch.Allocate<bool>(bodies.Size());
     wrongIn = scratch.Allocate<uint8_t>(bodies.Size());
     contactsBegin = scratch.Allocate<uint32_t>(bodies.Size());
     contactsEnd = scratch.Allocate<uint32_t>(bodies.Size());
@@ -50,29 +63,43 @@ LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, Sc
     iterates = scratch.Allocate<bool>(CountContacts(layout));
     clusters = scratch.Allocate<uint32_t>(bodies.Size());
     iterations = scratch.Allocate<uint32_t>(bodies.Size());
-    for (const uint32_t body : layout.bodies) wrongIn[body] = 0;
+    for (const uint32_t body : layout.bodies) {
+        isUneven[body] = false;
+        wrongIn[body] = 0;
+    }
+    const auto note = [&](const auto& batches) {
+        for (const auto& batch : batches)
+            for (int lane = 0; lane < batch.count; ++lane) {
+                const uint32_t a = batch.bodyA[lane], b = batch.bodyB[lane];
+                if (AreUneven(bodies, a, b)) isUneven[a] = isUneven[b] = true;
+            }
+    };
+    note(std::span(layout.moving.batches).first(layout.moving.count));
+    note(layout.overflowMoving);
 }
 
 LocalIterations::LocalIterations(const BodyStore& bodies, const JointStore& joints, SolverLayout& layout,
                                  const SolverGroup& group, const LocalMemory& memory)
     : bodies_(bodies), joints_(joints), layout_(layout), group_(group), memory_(memory) {}
 
-template <int N>
-void LocalIterations::MarkBodies(const ContactBatch<N, false>& batch, uint8_t substep) {
+template <int N, bool kFixedB>
+void LocalIterations::MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
+    if (memory_.isUneven.empty()) return;
+    const uint16_t wrong = kFixedB ? batch.hits : batch.unsolved;
     for (int lane = 0; lane < batch.count; ++lane) {
-        if (!(batch.unsolved >> lane & 1)) continue;
-        const uint32_t a = batch.bodyA[lane], b = batch.bodyB[lane];
-        const float massA = bodies_.masses[a].inverseMass, massB = bodies_.masses[b].inverseMass;
-        if (std::max(massA, massB) < kLeastMassRatio * std::min(massA, massB)) continue;
+        if (!(wrong >> lane & 1)) continue;
+        const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
+        if (kFixedB ? !memory_.isUneven[a] : !AreUneven(bodies_, a, b)) continue;
         if (joints_.HasAny(a) || joints_.HasAny(b)) continue;
         memory_.wrongIn[a] = memory_.wrongIn[b] = static_cast<uint8_t>(substep + 1);
         lastWrong_.store(substep + 1, std::memory_order_relaxed);
     }
 }
-template void LocalIterations::MarkBodies(const ContactBatch<1, false>&, uint8_t);
-#if FULCRUM_LANES > 1
-template void LocalIterations::MarkBodies(const ContactBatch<kLanes, false>&, uint8_t);
-#endif
+#define FULCRUM_INSTANTIATE(lanes, fixedB) \
+    template void LocalIterations::MarkBodies(const ContactBatch<lanes, fixedB>&, uint8_t);
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
+FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
+#undef FULCRUM_INSTANTIATE
 
 // Calls visit(batches, number of lanes, index of the first contact) for the batches of each color and kind, in the
 // order of solving.
@@ -170,10 +197,8 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
         isAnyWrong = false;
         VisitRanges([&](auto batches, uint32_t count, uint32_t first) {
             const std::span<bool> iterates = memory_.iterates.subspan(first, count);
-            for (auto next = std::ranges::find(iterates, true); next != iterates.end();
-                 next = std::find(next + 1, iterates.end(), true)) {
-                *next = false;
-                const uint32_t i = static_cast<uint32_t>(next - iterates.begin());
+            for (uint32_t i = NextTrue(iterates, 0); i < count; i = NextTrue(iterates, i + 1)) {
+                iterates[i] = false;
                 auto& batch = batches[i / WidthOf(batches)];
                 const int lane = static_cast<int>(i % WidthOf(batches));
                 const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);

@@ -4,9 +4,9 @@
 // heavy one back. So where a contact of bodies of different mass has a large velocity error
 // (ContactSolveSettings::mostError), the contacts of both bodies are iterated, and those of all bodies whose contacts
 // turn out to be as wrong, until none is, or the effort for a cluster of such bodies is used up: what many bodies do to
-// each other in a heap is left to the usual iterations. Serial, in the order of the colors. Bodies with joints are left
-// out: their joints would have to be iterated, too.
-// Used by Solve.
+// each other in a heap is left to the usual iterations. The same where such a light body hits what it lies on. Serial,
+// in the order of the colors. Bodies with joints are left out: their joints would have to be iterated, too. Used by
+// Solve.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
@@ -23,9 +23,9 @@ namespace fulcrum {
 // Scratch memory of all groups of a step. Contacts, and lanes without one, have indices in the order of solving: by
 // group, color, moving before fixed ones; those without a color come before all others.
 struct LocalMemory {
-    // Empty if all bodies have similar masses.
     LocalMemory(const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch);
 
+    std::span<bool> isUneven;              // by body: some contact of it is with a body of different mass
     std::span<uint8_t> wrongIn;            // by body: the substep, from 1, in which some contact of it was wrong last
     std::span<uint32_t> contactsBegin;     // by body: in `contactsOfBodies`
     std::span<uint32_t> contactsEnd;       // likewise
@@ -44,8 +44,7 @@ public:
     // After a velocity iteration over a batch. Called by several threads, for different batches.
     template <int N, bool kFixedB>
     void Check(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
-        if constexpr (!kFixedB)
-            if (batch.unsolved != 0) MarkBodies(batch, substep);
+        if (batch.unsolved != 0) MarkBodies(batch, substep);
     }
 
     // Whether some contact was wrong in the substep.
@@ -55,8 +54,8 @@ public:
     void Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax);
 
 private:
-    template <int N>
-    void MarkBodies(const ContactBatch<N, false>& batch, uint8_t substep);
+    template <int N, bool kFixedB>
+    void MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep);
     template <class Visit>
     void VisitRanges(Visit&& visit);
     void ListContacts();

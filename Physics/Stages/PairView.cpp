@@ -99,13 +99,24 @@ float ClosingMotion(const CollideStores& stores, const Pair& pair) {
     }
     float fastest = std::max(LengthSquared(Vector3(vB - vA)), LengthSquared(vB));
     if (!pair.fixedB) fastest = std::max(fastest, LengthSquared(vA));
+    if (stores.IsSecondPass()) {
+        const auto most = [&](const Vector3& v, uint32_t body) {
+            const Deflection* deflection = stores.DeflectionOf(body);
+            return deflection ? std::max(Length(v), Length(Vector3(v + deflection->linear))) : Length(v);
+        };
+        return stores.step.dt * (most(vA, pair.bodyA) + most(vB, pair.bodyB));
+    }
     return stores.step.dt * Sqrt(fastest);
 }
 
 // m: how much farther two pieces may extend by rotating within the step; convex ones at most to their bounding spheres.
 // For a rotating surface, the part near the other piece counts.
 float TurningMotion(const CollideStores& stores, const Pair& pair, PairShapes shapes) {
-    const auto angleOf = [&](uint32_t body) { return stores.step.dt * Length(stores.bodies.AngularVelocityOf(body)); };
+    const auto angleOf = [&](uint32_t body) {
+        const Deflection* deflection = stores.DeflectionOf(body);
+        return stores.step.dt *
+               (Length(stores.bodies.AngularVelocityOf(body)) + (deflection ? Length(deflection->angular) : 0.0f));
+    };
     const auto ofConvex = [&](uint32_t body, const Shape& shape) {
         const float outer = shape.OuterRadius();
         return std::min(angleOf(body) * outer, outer - shape.InnerRadius());
@@ -153,6 +164,44 @@ bool WillCollideAgain(const CollideStores& stores, const Pair& pair, PairShapes 
         return square * shape.OuterRadius() > 2 * kMostDeviation * shape.InnerRadius() && square < 1;
     };
     return will(pair.bodyA, shapes.a) || (!pair.fixedB && will(pair.bodyB, shapes.b));
+}
+
+// What stops the approach of two bodies within the step.
+struct Hit {
+    float speed = 0;                // m/s: of the approach, less what closes the gap in the step
+    Vector3 onA = Vector3::Zero();  // m, the point, in A's frame
+};
+
+// Bodies that move by less in the step than this fraction of their inner radius are not deflected.
+constexpr float kLeastDeflection = 0.1f;
+
+// normal: unit, in A's frame, from A to B.
+void NoteDeflections(const CollideStores& stores, const PairView& v, const Vector3& normal, const Hit& hit,
+                     WorkerFindings& findings) {
+    const float motion = hit.speed * stores.step.dt;
+    if (!(motion > kLeastDeflection * std::min(v.shapes.a.InnerRadius(), v.shapes.b.InnerRadius()))) return;
+    const BodyStore& bodies = stores.bodies;
+    const Quaternion toWorld = stores.RotationOf(v.pair.bodyA);
+    const Vector3 n = Rotate(toWorld, normal);
+    const int count = v.pair.fixedB ? 1 : 2;
+    const uint32_t body[2] = {v.pair.bodyA, v.pair.bodyB};
+    Vector3 turn[2];  // angular velocity by a unit impulse
+    float response = 0;
+    for (int i = 0; i < count; ++i) {
+        const Vector3 arm = Rotate(toWorld, i == 0 ? hit.onA : Vector3(hit.onA - v.bodyBInA.position));
+        const Vector3 torque = Cross<float>(arm, n);
+        turn[i] = bodies.masses[body[i]].InverseInertia() * torque;
+        response += bodies.masses[body[i]].inverseMass + Dot<float>(torque, turn[i]);
+    }
+    if (!(response > 0)) return;
+    for (int i = 0; i < count; ++i) {
+        const float impulse = (i == 0 ? -hit.speed : hit.speed) / response;
+        const Shape& shape = i == 0 ? v.shapes.a : v.shapes.b;
+        const Vector3 linear = n * (impulse * bodies.masses[body[i]].inverseMass), angular = turn[i] * impulse;
+        const float size = Length(linear) + Length(angular) * shape.OuterRadius();
+        if (size * stores.step.dt > kLeastDeflection * shape.InnerRadius())
+            findings.deflections.push_back({body[i], body[1 - i], linear, angular, size});
+    }
 }
 
 // Clears the manifold.
@@ -249,7 +298,7 @@ bool TurnsFromOthers(const CollideStores& stores, const PairView& view, const Ma
 }
 
 void WriteManifold(const CollideStores& stores, const PairView& v, const Manifold& manifold, PairContact& contact,
-                   ContactRecord& record) {
+                   ContactRecord& record, WorkerFindings& findings) {
     Pair& pair = v.pair;
     const Vector3 normal =
         pair.offset ? Rotate(stores.colliders.shapes[pair.colliderA].local.rotation, manifold.normal) : manifold.normal;
@@ -272,11 +321,12 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     const Vector3 vA = inA(bodies.LinearVelocityOf(pair.bodyA)), wA = inA(bodies.AngularVelocityOf(pair.bodyA));
     const Vector3 vB = inA(bodies.LinearVelocityOf(pair.bodyB)), wB = inA(bodies.AngularVelocityOf(pair.bodyB));
 
-    // Speeds at the start of the step do not tell which points of fast rotating bodies may touch.
-    const bool keepsAll = stores.elapsed > 0 || WillCollideAgain(stores, pair, v.shapes);
+    // Speeds at the start of the step do not tell which points of fast rotating or deflected bodies may touch.
+    const bool keepsAll = stores.elapsed > 0 || stores.IsSecondPass() || WillCollideAgain(stores, pair, v.shapes);
     const float farEnd = FarEndFactor(stores.coloring, pair),
                 speculative = SpeculativeDistance(stores.step.settings, v.shapes);
     int count = 0;
+    Hit hit;
     for (int i = 0; i < manifold.pointCount; ++i) {
         const ManifoldPoint& found = manifold.points[i];
         const Vector3 onA = ToBody(stores, pair, pair.colliderA, found.positionOnA);
@@ -286,6 +336,8 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
         const float ofB = -Dot<float>(normal, Vector3(vB + Cross<float>(wB, Vector3(pointOfB - v.bodyBInA.position))));
         // One of the two may be stopped by another body.
         const float approach = std::max(ofA + ofB, std::max(ofB, pair.fixedB ? 0.0f : ofA));
+        const float excess = ofA + ofB - std::max(found.separation, 0.0f) / stores.step.dt;
+        if (excess > hit.speed) hit = {excess, onA};
         if (!keepsAll && found.separation > speculative + farEnd * std::max(approach, 0.0f) * stores.step.dt) continue;
         const Vector3 onB = v.bodyBInA.InverseTransform(pointOfB);
         for (int k = 0; k < 3; ++k) {
@@ -302,6 +354,14 @@ void WriteManifold(const CollideStores& stores, const PairView& v, const Manifol
     pair.pointCount = static_cast<uint8_t>(count);
     if (oldCount == 0) record.ForgetFriction();
     if (count > 0) WriteTwistRadius(record);
+    if (stores.elapsed == 0 && !stores.IsSecondPass()) NoteDeflections(stores, v, normal, hit, findings);
+}
+
+bool IsFoundAgain(const CollideStores& stores, const Pair& pair, WorkerFindings& findings) {
+    if (!stores.IsSecondPass() || !pair.touching || pair.pointCount == 0) return false;
+    ++findings.contacts;
+    findings.points += pair.pointCount;
+    return true;
 }
 
 PairChange NoteTouching(const CollideStores& stores, uint32_t index, WorkerFindings& findings) {

@@ -25,6 +25,15 @@ struct CollideStores {
     PairStore& pairs;
     // s since the start of the step, if pairs collide again within it (Recollide.h).
     float elapsed = 0;
+    // The second pass of Collide, over the pairs of bodies that contacts found in the first one will deflect: these,
+    // and by body the index of its own, or kNone.
+    std::span<const Deflection> deflections{};
+    std::span<const uint32_t> deflectionOf{};
+
+    bool IsSecondPass() const { return !deflections.empty(); }
+    const Deflection* DeflectionOf(uint32_t body) const {
+        return !IsSecondPass() || deflectionOf[body] == PairStore::kNone ? nullptr : &deflections[deflectionOf[body]];
+    }
 
     // Of the bodies' center frames at that time. Relative positions do not depend on the distance from the origin.
     Quaternion RotationOf(uint32_t body) const;
@@ -75,9 +84,9 @@ bool TurnsFromOthers(const CollideStores& stores, const PairView& view, const Ma
 
 // Writes the result of the narrow phase to the pair's contact and record. Impulses are kept for points with matching
 // feature ids, unless the normal turns. Points farther apart than the speculative distance are kept only if they can
-// touch within the step.
+// touch within the step. Adds the bodies that the contact will deflect to findings.deflections.
 void WriteManifold(const CollideStores& stores, const PairView& view, const Manifold& manifold, PairContact& contact,
-                   ContactRecord& record);
+                   ContactRecord& record, WorkerFindings& findings);
 
 // Updates the manifolds of a pair with a surface; `reach`, m: the speculative distance. Writes the changes of
 // additional manifolds to `changes`, and returns that of the first. Manifolds without a slot are added to
@@ -88,6 +97,9 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
 // Creates slots for those, serially, in the order of the pairs.
 void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::span<WorkerFindings> workers);
 
+// Counts a contact that the first pass has found already: nothing else is new of it in the second one. Returns false if
+// it has none.
+bool IsFoundAgain(const CollideStores& stores, const Pair& pair, WorkerFindings& findings);
 // Determines the change of a manifold in this step, after calling the listener.
 PairChange NoteTouching(const CollideStores& stores, uint32_t pair, WorkerFindings& findings);
 // Calls the listener for a manifold with points and applies its changes; returns false if the contact is ignored.

@@ -60,7 +60,7 @@ void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, 
         if (manifold.pointCount == 0) return MarkApart(pairs, pair);
         // Other workers may solve what this contact balances: the next step drops the impulses of both.
         if (TurnsFromOthers(stores, view, manifold)) return;
-        WriteManifold(stores, view, manifold, pairs.contacts[pair.contact], pairs.RecordOf(pair));
+        WriteManifold(stores, view, manifold, pairs.contacts[pair.contact], pairs.RecordOf(pair), findings);
         pairs.contacts[pair.contact].reference = view.bInA;
         return MarkFound(pairs, pair);
     }

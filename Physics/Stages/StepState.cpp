@@ -6,18 +6,22 @@ namespace fulcrum {
 
 size_t HeapBytes(const WorkerFindings& findings) {
     const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
-                 surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, sweepHits, sensorCandidates,
-                 sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest, deepestPair, clamped,
-                 frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan, joints] = findings;
+                 surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, deflections, sweepHits,
+                 sensorCandidates, sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest,
+                 deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan, joints] =
+        findings;
     return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
-                     surfacePlaces, surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, sweepHits,
-                     sensorCandidates, sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest,
-                     deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan, joints);
+                     surfacePlaces, surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, deflections,
+                     sweepHits, sensorCandidates, sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept,
+                     deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan,
+                     joints);
 }
 
 size_t HeapBytes(const PairUpdates& updates) {
-    const auto& [found, activated, changes, moreManifolds, hadManyNewContacts] = updates;
-    return HeapBytes(found, activated, changes, moreManifolds, hadManyNewContacts);
+    const auto& [found, activated, changes, moreManifolds, deflections, deflectedPairs, changesBefore,
+                 hadManyNewContacts] = updates;
+    return HeapBytes(found, activated, changes, moreManifolds, deflections, deflectedPairs, changesBefore,
+                     hadManyNewContacts);
 }
 
 size_t HeapBytes(const CrowdState& crowd) {

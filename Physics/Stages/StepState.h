@@ -39,6 +39,14 @@ struct TurnedNormal {
     Vector3 before;  // what the normal was: unit, world axes, from A to B
 };
 
+// A body that a contact will deflect within the step, and by how much if the contact stops the approach of its two
+// bodies where they meet.
+struct Deflection {
+    uint32_t body, otherBody;
+    Vector3 linear, angular;  // m/s and rad/s, world axes
+    float size;               // m/s: of both, at its outer radius
+};
+
 // One worker's results of a stage; merged in an order that does not depend on the distribution of work.
 struct alignas(64) WorkerFindings {
     Array<uint32_t> colliders;         // UpdateBounds: those that left their fat bounds
@@ -52,6 +60,7 @@ struct alignas(64) WorkerFindings {
     Array<MoreManifold> more;                                    // Collide: manifolds without a slot yet
     Array<NewContact> newContacts;                               // Collide
     Array<TurnedNormal> turnedNormals;                           // Collide
+    Array<Deflection> deflections;                               // Collide
     Array<SweepHit> sweepHits;                                   // Continuous
     Array<uint64_t> sensorCandidates;                            // Sense
     Array<SensorVisit> sensorVisits;                             // likewise
@@ -93,7 +102,11 @@ struct PairUpdates {
     Array<uint32_t> activated;          // FindPairs: pairs that it made active
     Array<PairChange> changes;          // Collide: by pair; None for those that are not active
     Array<MoreManifold> moreManifolds;  // Collide
-    bool hadManyNewContacts = false;    // Collide: in a step, see AddNewContacts
+    // Collide: the deflected bodies, one entry each, and their pairs, with what had changed of them before.
+    Array<Deflection> deflections;
+    Array<uint32_t> deflectedPairs;
+    Array<PairChange> changesBefore;
+    bool hadManyNewContacts = false;  // Collide: in a step, see AddNewContacts
 };
 
 size_t HeapBytes(const PairUpdates& updates);

@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x5900fec7f3525decull;
-constexpr uint64_t kGoldenHashOfJoints = 0x9e54aa5dc5008d7eull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x593636f81a286878ull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x022a9e2488d02425ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7baa250c712170ccull;
+constexpr uint64_t kGoldenHash = 0x910a1f4b6d1676caull;
+constexpr uint64_t kGoldenHashOfJoints = 0x38a7086618423441ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x1c3e37cf614fa67aull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x6be3617a220f5108ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0xa15507e4e361be77ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
