@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/World/FatBounds.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace fulcrum {
@@ -199,7 +200,7 @@ void NoteDeflections(const CollideStores& stores, const PairView& v, const Vecto
         const Shape& shape = i == 0 ? v.shapes.a : v.shapes.b;
         const Vector3 linear = n * (impulse * bodies.masses[body[i]].inverseMass), angular = turn[i] * impulse;
         const float size = Length(linear) + Length(angular) * shape.OuterRadius();
-        if (size * stores.step.dt > kLeastDeflection * shape.InnerRadius())
+        if (std::isfinite(size) && size * stores.step.dt > kLeastDeflection * shape.InnerRadius())
             findings.deflections.push_back({body[i], body[1 - i], linear, angular, size});
     }
 }
