@@ -148,8 +148,7 @@ template <Pass kPass, bool kRare, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                     const ContactSolveSettings& settings) {
     using Real = Wide<N>;
-    // Where they are used: after velocity iterations between two dynamic bodies, and for contacts that are iterated
-    // alone.
+    // Where they are used: after velocity iterations, and for contacts that are iterated alone.
     constexpr bool kFindsErrors = kPass != Pass::Relax || N == 1;
     const Real zero(0.0f);
     Twists<N, kFixedB> twists;

@@ -23,6 +23,7 @@ namespace fulcrum {
 // Scratch memory of all groups of a step. Contacts, and lanes without one, have indices in the order of solving: by
 // group, color, moving before fixed ones; those without a color come before all others.
 struct LocalMemory {
+    // Empty if all bodies have similar masses.
     LocalMemory(const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch);
 
     std::span<bool> isUneven;              // by body: some contact of it is with a body of different mass
