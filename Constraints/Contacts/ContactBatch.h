@@ -48,6 +48,10 @@ struct FixedSide {
 // triangles. These are the largest deviation and the largest sliding, as fractions of the smaller inner radius.
 inline constexpr float kMostDeviation = 0.07f, kMostSliding = 0.25f;
 
+// In a step overlaps grow up to this depth, and beyond it by this much, as fractions of the smaller inner radius:
+// LimitDepth corrects more, with that tolerance. What grows slowly is left to the soft rows: a load sinks in.
+inline constexpr float kMostDepth = 0.05f, kMostDeepening = 0.005f, kDepthTolerance = 0.005f;
+
 template <int N, bool kFixedB>
 struct ContactBatch {
     using Real = Wide<N>;
@@ -67,6 +71,8 @@ struct ContactBatch {
     // Lanes with a velocity error above ContactSolveSettings::mostError before the last velocity iteration, and above
     // hitError, if B is static or kinematic.
     uint16_t unsolved = 0, hits = 0;
+    // Lanes with an overlap that has grown by more in this step than LimitDepth allows.
+    uint16_t deepened = 0;
     // How often the bodies collided in this step: they collide again after as many times the relative motion for which
     // one manifold is valid (UpdateSeparations).
     uint8_t collisions[N];
@@ -185,13 +191,18 @@ bool IterateContact(ContactBatch<N, kFixedB>& batch, int lane, float overRelaxat
 template <int N, bool kFixedB>
 void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
-// Updates the separations from the displacements, and the lanes that should collide again.
+// Updates the separations from the displacements, the lanes that should collide again, and those that deepened.
 template <int N, bool kFixedB>
 void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
 // A position iteration (Baumgarte): moves the bodies out of overlap, adds no velocity.
 template <int N, bool kFixedB>
 void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
+
+// The same iteration over one lane, only for overlaps that have grown too much in the step (kMostDeepening), and back to
+// what is allowed. Updates the separations. Returns whether it moved the bodies.
+template <int N, bool kFixedB>
+bool LimitDepth(ContactBatch<N, kFixedB>& batch, int lane, BodyState* states, const ContactSolveSettings& settings);
 
 // One iteration over the pseudo-velocities (split impulses) that pull joints together which are far apart (PullJoints);
 // they are in `pseudo` in place of the velocities. Points may close their gaps within the substep and approach no

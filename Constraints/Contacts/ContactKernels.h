@@ -9,6 +9,14 @@ namespace fulcrum::contacts {
 // Fraction of the smaller inner radius up to which overlaps have the full softness (inverseSoftDepth).
 inline constexpr float kSoftFraction = 0.25f;
 
+// The separation, over the depth of inverseSoftDepth, at which LimitDepth stops a row. start: that of the start of the
+// step.
+template <class Real>
+FULCRUM_FORCE_INLINE Real DepthLimitOf(const Real& start) {
+    return Min(Real(-kMostDepth / kSoftFraction), start - Real(kMostDeepening / kSoftFraction));
+}
+inline constexpr float kLeastDeepening = kDepthTolerance / kSoftFraction;  // likewise, beyond the limit
+
 // The two bodies' twists in lanes; whole rows, so that the scatter preserves their spare floats.
 template <int N, bool kFixedB>
 struct Twists {

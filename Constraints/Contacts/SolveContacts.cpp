@@ -65,10 +65,15 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
     Gather<BodyRow::Displacement>(batch, states, twists);
     const Twist<Real> moved = RelativeTwist<BodyRow::Displacement>(batch, twists, settings.elapsed);
     const NormalMotion<Real> motion = NormalMotionOf(batch, moved);
+    const Real zero(0.0f), perDepth = batch.inverseSoftDepth;
+    WideMask<N> isDeep = zero > zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         auto& row = batch.rows[i];
         row.separation = row.startSeparation + MotionOf(row, motion);
+        const Real limit = DepthLimitOf<Real>(row.startSeparation * perDepth) - Real(kLeastDeepening);
+        isDeep = isDeep | ((row.separation * perDepth < limit) & (row.inverseResponse > zero));
     }
+    batch.deepened = static_cast<uint16_t>(isDeep.ToBits() & LanesOf(batch));
     FindOutdated(batch, moved);
 }
 

@@ -54,8 +54,6 @@ LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, Sc
         least = std::min(least, bodies.masses[body].inverseMass);
         most = std::max(most, bodies.masses[body].inverseMass);
     }
-    if (most < kLeastMassRatio * least) return;  // no contact will be marked
-    isUneven = scratch.Allocate<bool>(bodies.Size());
     wrongIn = scratch.Allocate<uint8_t>(bodies.Size());
     contactsBegin = scratch.Allocate<uint32_t>(bodies.Size());
     contactsEnd = scratch.Allocate<uint32_t>(bodies.Size());
@@ -63,10 +61,10 @@ LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, Sc
     iterates = scratch.Allocate<bool>(CountContacts(layout));
     clusters = scratch.Allocate<uint32_t>(bodies.Size());
     iterations = scratch.Allocate<uint32_t>(bodies.Size());
-    for (const uint32_t body : layout.bodies) {
-        isUneven[body] = false;
-        wrongIn[body] = 0;
-    }
+    for (const uint32_t body : layout.bodies) wrongIn[body] = 0;
+    if (most < kLeastMassRatio * least) return;
+    isUneven = scratch.Allocate<bool>(bodies.Size());
+    for (const uint32_t body : layout.bodies) isUneven[body] = false;
     const auto note = [&](const auto& batches) {
         for (const auto& batch : batches)
             for (int lane = 0; lane < batch.count; ++lane) {
@@ -90,7 +88,7 @@ void LocalIterations::MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t 
         if (!(wrong >> lane & 1)) continue;
         const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
         if (kFixedB ? !memory_.isUneven[a] : !AreUneven(bodies_, a, b)) continue;
-        if (joints_.HasAny(a) || joints_.HasAny(b)) continue;
+        if (IsJointed(a, b)) continue;
         memory_.wrongIn[a] = memory_.wrongIn[b] = static_cast<uint8_t>(substep + 1);
         lastWrong_.store(substep + 1, std::memory_order_relaxed);
     }
@@ -136,8 +134,7 @@ void LocalIterations::ListContacts() {
                 const auto& batch = batches[i / WidthOf(batches)];
                 const int lane = static_cast<int>(i % WidthOf(batches));
                 if (lane >= batch.count) continue;
-                const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
-                if (!joints_.HasAny(a) && !joints_.HasAny(b)) visit(first + i, a, b);
+                visit(first + i, batch.bodyA[lane], SecondBody(batch, lane));
             }
         });
     };
@@ -179,22 +176,19 @@ uint32_t LocalIterations::JoinClusters(UnionFind& clusters, uint32_t a, uint32_t
     return root;
 }
 
-void LocalIterations::Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax) {
-    if (!areListed_) ListContacts();
-    areListed_ = true;
-    const uint8_t mark = static_cast<uint8_t>(substep + 1);
-    const auto addContactsOf = [&](uint32_t body) {
-        for (const uint32_t contact : ContactsOf(body)) memory_.iterates[contact] = true;
-    };
-    const std::span<const uint32_t> bodies = Bodies();
-    UnionFind clusters(memory_.clusters, bodies);
-    for (const uint32_t body : bodies) {
-        memory_.iterations[body] = 0;
-        if (memory_.wrongIn[body] == mark) addContactsOf(body);
-    }
-    bool isAnyWrong = true;
-    for (int round = 0; round < kMostRounds && isAnyWrong; ++round) {
-        isAnyWrong = false;
+void LocalIterations::MarkContactsOf(uint32_t body) {
+    for (const uint32_t contact : ContactsOf(body)) memory_.iterates[contact] = true;
+}
+
+// Calls iterate(batch, lane, body A, body B) for the marked contacts, in the order of solving, round after round. It
+// marks others and returns whether it did. jointed: of jointed bodies, too.
+template <class Iterate>
+void LocalIterations::IterateMarked(bool jointed, Iterate&& iterate) {
+    UnionFind clusters(memory_.clusters, Bodies());
+    for (const uint32_t body : Bodies()) memory_.iterations[body] = 0;
+    bool isAnyMarked = true;
+    for (int round = 0; round < kMostRounds && isAnyMarked; ++round) {
+        isAnyMarked = false;
         VisitRanges([&](auto batches, uint32_t count, uint32_t first) {
             const std::span<bool> iterates = memory_.iterates.subspan(first, count);
             for (uint32_t i = NextTrue(iterates, 0); i < count; i = NextTrue(iterates, i + 1)) {
@@ -202,23 +196,52 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
                 auto& batch = batches[i / WidthOf(batches)];
                 const int lane = static_cast<int>(i % WidthOf(batches));
                 const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
+                if (!jointed && IsJointed(a, b)) continue;
                 uint32_t& iterations = memory_.iterations[JoinClusters(clusters, a, b)];
                 if (iterations >= kMostIterations) continue;
                 ++iterations;
-                if (!IterateContact(batch, lane, kOverRelaxation, states, settings, relax)) continue;
-                isAnyWrong = true;
-                for (const uint32_t body : {a, b}) {
-                    memory_.wrongIn[body] = mark;
-                    addContactsOf(body);
-                }
+                isAnyMarked |= iterate(batch, lane, a, b);
             }
         });
     }
     // What the last round left.
-    if (isAnyWrong)
+    if (isAnyMarked)
         VisitRanges([&](const auto&, uint32_t count, uint32_t first) {
             std::ranges::fill(memory_.iterates.subspan(first, count), false);
         });
+}
+
+void LocalIterations::Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax) {
+    if (!areListed_) ListContacts();
+    areListed_ = true;
+    const uint8_t mark = static_cast<uint8_t>(substep + 1);
+    for (const uint32_t body : Bodies())
+        if (memory_.wrongIn[body] == mark) MarkContactsOf(body);
+    IterateMarked(false, [&](auto& batch, int lane, uint32_t a, uint32_t b) {
+        if (!IterateContact(batch, lane, kOverRelaxation, states, settings, relax)) return false;
+        for (const uint32_t body : {a, b}) {
+            memory_.wrongIn[body] = mark;
+            MarkContactsOf(body);
+        }
+        return true;
+    });
+}
+
+void LocalIterations::LimitDepths(BodyState* states, const ContactSolveSettings& settings) {
+    if (!areListed_) ListContacts();
+    areListed_ = true;
+    VisitRanges([&](auto batches, uint32_t, uint32_t first) {
+        for (const auto& batch : batches) {
+            for (int lane = 0; batch.deepened >> lane != 0; ++lane)
+                if (batch.deepened >> lane & 1) memory_.iterates[first + static_cast<uint32_t>(lane)] = true;
+            first += WidthOf(batches);
+        }
+    });
+    IterateMarked(true, [&](auto& batch, int lane, uint32_t a, uint32_t b) {
+        if (!LimitDepth(batch, lane, states, settings)) return false;
+        for (const uint32_t body : {a, b}) MarkContactsOf(body);
+        return true;
+    });
 }
 
 }  // namespace fulcrum

@@ -47,12 +47,18 @@ public:
     void Check(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
         if (batch.unsolved != 0) MarkBodies(batch, substep);
     }
-
     // Whether some contact was wrong in the substep.
     bool AreNeededIn(uint8_t substep) const { return lastWrong_.load(std::memory_order_relaxed) == substep + 1; }
-
     // relax: after the relax iterations of the substep, else after its velocity iterations.
     void Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax);
+
+    // The same for the depths, after the separations of a batch were updated.
+    template <int N, bool kFixedB>
+    void CheckDepths(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
+        if (batch.deepened != 0) lastDeepened_.store(substep + 1, std::memory_order_relaxed);
+    }
+    bool IsAnyTooDeepIn(uint8_t substep) const { return lastDeepened_.load(std::memory_order_relaxed) == substep + 1; }
+    void LimitDepths(BodyState* states, const ContactSolveSettings& settings);
 
 private:
     template <int N, bool kFixedB>
@@ -60,6 +66,10 @@ private:
     template <class Visit>
     void VisitRanges(Visit&& visit);
     void ListContacts();
+    template <class Iterate>
+    void IterateMarked(bool jointed, Iterate&& iterate);
+    void MarkContactsOf(uint32_t body);
+    bool IsJointed(uint32_t a, uint32_t b) const { return joints_.HasAny(a) || joints_.HasAny(b); }
     std::span<const uint32_t> Bodies() const {
         return std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
     }
@@ -72,7 +82,7 @@ private:
     const SolverGroup& group_;
     const LocalMemory& memory_;
     bool areListed_ = false;
-    std::atomic<int> lastWrong_ = 0;  // the substep, from 1
+    std::atomic<int> lastWrong_ = 0, lastDeepened_ = 0;  // the substep, from 1
 };
 
 }  // namespace fulcrum

@@ -32,9 +32,10 @@ enum class Verb : uint8_t {
     WarmStart,
     FirstVelocities,
     Velocities,
-    // Serial, for contacts with large velocity errors (LocalIterations.h):
+    // Serial, for contacts with large velocity errors, or overlaps that grow fast (LocalIterations.h):
     IterateVelocities,
     IterateRelax,
+    LimitDepths,
     ClearPulls,
     FirstPull,
     Pull,
@@ -72,7 +73,9 @@ bool IsOfRecollision(Verb verb) {
     return verb == Verb::StoreOutdated || verb == Verb::Recollide || verb == Verb::Refill;
 }
 
-bool IsSerial(Verb verb) { return verb == Verb::IterateVelocities || verb == Verb::IterateRelax; }
+bool IsSerial(Verb verb) {
+    return verb == Verb::IterateVelocities || verb == Verb::IterateRelax || verb == Verb::LimitDepths;
+}
 
 class StepSolver {
 public:
@@ -205,6 +208,7 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::IterateVelocities:
             case Verb::IterateRelax:
+            case Verb::LimitDepths:
             case Verb::NoteImpulses:
             case Verb::ClearPulls:
             case Verb::FirstPull:
@@ -246,6 +250,8 @@ private:
 
     // Additional iterations over single contacts.
     void RunIterated(Verb verb, uint8_t substep) {
+        if (verb == Verb::LimitDepths)
+            return local_.LimitDepths(bodies_.states.data(), ContactSettingsAt(substep, 1));
         const bool relax = verb == Verb::IterateRelax;
         ContactSolveSettings settings = ContactSettingsAt(substep, relax ? 1 : 0.5f);
         // Friction, too: what many iterations push would slip away.
@@ -271,12 +277,14 @@ private:
             case Verb::Relax:
                 RelaxContacts(batch, states, ContactSettingsAt(substep, 1));
                 NoteOutdated(batch, substep);
+                local_.CheckDepths(batch, substep);
                 break;
             case Verb::FirstCorrection:
             case Verb::Correction: CorrectContacts(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::Separations:
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 NoteOutdated(batch, substep);
+                local_.CheckDepths(batch, substep);
                 break;
             case Verb::StoreOutdated: StoreContacts(batch, stores_.pairs.records.data()); break;
             case Verb::Recollide: {
@@ -304,6 +312,7 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::IterateVelocities:
             case Verb::IterateRelax:
+            case Verb::LimitDepths:
             case Verb::ClearPulls:
             case Verb::IntegratePoses:
             case Verb::NextSubstep: break;
@@ -329,6 +338,7 @@ private:
             case Verb::IntegrateVelocities:
             case Verb::IterateVelocities:
             case Verb::IterateRelax:
+            case Verb::LimitDepths:
             case Verb::NoteImpulses:
             case Verb::ClearPulls:
             case Verb::StopPulls:
@@ -344,8 +354,9 @@ private:
     void NoteOutdated(const Batch& batch, uint8_t substep) {
         if ((batch.rotated | batch.slid) != 0) lastOutdated_.store(substep + 1, std::memory_order_relaxed);
     }
-    // Whether no contact is outdated at the beginning of this substep, or has a large velocity error in it.
+    // Whether no contact is outdated at the beginning of this substep, has a large velocity error in it, or is too deep.
     bool IsSkipped(Verb verb, uint8_t substep) const {
+        if (verb == Verb::LimitDepths) return !local_.IsAnyTooDeepIn(substep);
         if (IsSerial(verb)) return !local_.AreNeededIn(substep);
         return IsOfRecollision(verb) && lastOutdated_.load(std::memory_order_relaxed) != substep;
     }
@@ -398,7 +409,7 @@ constexpr int kStopIterations = 2;
 // The solver loop as the sequence of its verbs. pulls: some joints are far apart. notes: for contact events.
 std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, bool notes, ScratchArena& scratch) {
     const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
-                                               kPullIterations + kStopIterations + 15);
+                                               kPullIterations + kStopIterations + 16);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -423,6 +434,7 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, bool no
         // The next substep needs current separations.
         if (corrects || settings.positionIterations == 0) verbs[n++] = Verb::Separations;
         else verbs[n++] = Verb::IterateRelax;
+        verbs[n++] = Verb::LimitDepths;
         if (notes) verbs[n++] = Verb::NoteImpulses;
     }
     return verbs.first(n);
