@@ -93,8 +93,16 @@ void LocalIterations::MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t 
         lastWrong_.store(substep + 1, std::memory_order_relaxed);
     }
 }
-#define FULCRUM_INSTANTIATE(lanes, fixedB) \
-    template void LocalIterations::MarkBodies(const ContactBatch<lanes, fixedB>&, uint8_t);
+
+template <int N, bool kFixedB>
+void LocalIterations::NoteDeepened(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
+    for (int lane = 0; lane < batch.count; ++lane)
+        if (batch.deepened >> lane & 1 && !IsJointed(batch.bodyA[lane], SecondBody(batch, lane)))
+            lastDeepened_.store(substep + 1, std::memory_order_relaxed);
+}
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                 \
+    template void LocalIterations::MarkBodies(const ContactBatch<lanes, fixedB>&, uint8_t); \
+    template void LocalIterations::NoteDeepened(const ContactBatch<lanes, fixedB>&, uint8_t);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, true)
 #undef FULCRUM_INSTANTIATE
@@ -134,7 +142,8 @@ void LocalIterations::ListContacts() {
                 const auto& batch = batches[i / WidthOf(batches)];
                 const int lane = static_cast<int>(i % WidthOf(batches));
                 if (lane >= batch.count) continue;
-                visit(first + i, batch.bodyA[lane], SecondBody(batch, lane));
+                const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
+                if (!IsJointed(a, b)) visit(first + i, a, b);
             }
         });
     };
@@ -181,9 +190,9 @@ void LocalIterations::MarkContactsOf(uint32_t body) {
 }
 
 // Calls iterate(batch, lane, body A, body B) for the marked contacts, in the order of solving, round after round. It
-// marks others and returns whether it did. jointed: of jointed bodies, too.
+// marks others and returns whether it did.
 template <class Iterate>
-void LocalIterations::IterateMarked(bool jointed, Iterate&& iterate) {
+void LocalIterations::IterateMarked(Iterate&& iterate) {
     UnionFind clusters(memory_.clusters, Bodies());
     for (const uint32_t body : Bodies()) memory_.iterations[body] = 0;
     bool isAnyMarked = true;
@@ -196,7 +205,6 @@ void LocalIterations::IterateMarked(bool jointed, Iterate&& iterate) {
                 auto& batch = batches[i / WidthOf(batches)];
                 const int lane = static_cast<int>(i % WidthOf(batches));
                 const uint32_t a = batch.bodyA[lane], b = SecondBody(batch, lane);
-                if (!jointed && IsJointed(a, b)) continue;
                 uint32_t& iterations = memory_.iterations[JoinClusters(clusters, a, b)];
                 if (iterations >= kMostIterations) continue;
                 ++iterations;
@@ -217,7 +225,7 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
     const uint8_t mark = static_cast<uint8_t>(substep + 1);
     for (const uint32_t body : Bodies())
         if (memory_.wrongIn[body] == mark) MarkContactsOf(body);
-    IterateMarked(false, [&](auto& batch, int lane, uint32_t a, uint32_t b) {
+    IterateMarked([&](auto& batch, int lane, uint32_t a, uint32_t b) {
         if (!IterateContact(batch, lane, kOverRelaxation, states, settings, relax)) return false;
         for (const uint32_t body : {a, b}) {
             memory_.wrongIn[body] = mark;
@@ -233,11 +241,12 @@ void LocalIterations::LimitDepths(BodyState* states, const ContactSolveSettings&
     VisitRanges([&](auto batches, uint32_t, uint32_t first) {
         for (const auto& batch : batches) {
             for (int lane = 0; batch.deepened >> lane != 0; ++lane)
-                if (batch.deepened >> lane & 1) memory_.iterates[first + static_cast<uint32_t>(lane)] = true;
+                if (batch.deepened >> lane & 1 && !IsJointed(batch.bodyA[lane], SecondBody(batch, lane)))
+                    memory_.iterates[first + static_cast<uint32_t>(lane)] = true;
             first += WidthOf(batches);
         }
     });
-    IterateMarked(true, [&](auto& batch, int lane, uint32_t a, uint32_t b) {
+    IterateMarked([&](auto& batch, int lane, uint32_t a, uint32_t b) {
         if (!LimitDepth(batch, lane, states, settings)) return false;
         for (const uint32_t body : {a, b}) MarkContactsOf(body);
         return true;

@@ -55,7 +55,7 @@ public:
     // The same for the depths, after the separations of a batch were updated.
     template <int N, bool kFixedB>
     void CheckDepths(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
-        if (batch.deepened != 0) lastDeepened_.store(substep + 1, std::memory_order_relaxed);
+        if (batch.deepened != 0) NoteDeepened(batch, substep);
     }
     bool IsAnyTooDeepIn(uint8_t substep) const { return lastDeepened_.load(std::memory_order_relaxed) == substep + 1; }
     void LimitDepths(BodyState* states, const ContactSolveSettings& settings);
@@ -63,11 +63,13 @@ public:
 private:
     template <int N, bool kFixedB>
     void MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep);
+    template <int N, bool kFixedB>
+    void NoteDeepened(const ContactBatch<N, kFixedB>& batch, uint8_t substep);
     template <class Visit>
     void VisitRanges(Visit&& visit);
     void ListContacts();
     template <class Iterate>
-    void IterateMarked(bool jointed, Iterate&& iterate);
+    void IterateMarked(Iterate&& iterate);
     void MarkContactsOf(uint32_t body);
     bool IsJointed(uint32_t a, uint32_t b) const { return joints_.HasAny(a) || joints_.HasAny(b); }
     std::span<const uint32_t> Bodies() const {
