@@ -216,6 +216,51 @@ void AddFacesAhead(const SupportPair& pair, const SupportingFace& faceA, const S
                                  tolerances.prefer, {}, manifold);
 }
 
+// The edge that faces the other shape, also if the shape must tip over first; false if there is none.
+bool EdgeOf(const SupportingFace& face, Segment& edge, uint32_t (&names)[2]) {
+    const bool isPoint = face.count == 1;
+    if (!(face.count == 2 || (isPoint && face.hasAhead))) return false;
+    edge = {face.vertices[0], isPoint ? face.ahead : face.vertices[1]};
+    names[0] = face.names[0];
+    names[1] = isPoint ? face.aheadName : face.names[1];
+    return true;
+}
+
+// Adds the ends of two edges that lie side by side, within reach, to a contact of one point: of nearly parallel
+// cylinders and tapered capsules one end touches, and the other may after a small rotation.
+void AddEndsAhead(const SupportPair& pair, const SupportingFace& faceA, const SupportingFace& faceB,
+                  const ContactTolerances& tolerances, Manifold& manifold) {
+    if (!tolerances.facesAhead || manifold.pointCount != 1) return;
+    Segment edges[2];
+    uint32_t names[2][2];
+    if (!EdgeOf(faceA, edges[0], names[0]) || !EdgeOf(faceB, edges[1], names[1])) return;
+    // Beside the other edge by more than half of this radius, an end passes.
+    const float radius = Min(pair.a.InnerRadius(), pair.b.InnerRadius());
+    constexpr int kEnds = 4;
+    ManifoldPoint ends[kEnds];
+    int count = 0;
+    for (int i = 0; i < kEnds; ++i) {
+        const int own = i / 2;
+        const Vector3 end = i % 2 == 0 ? edges[own].from : edges[own].to;
+        const Segment& other = edges[1 - own];
+        const Vector3 along = other.to - other.from;
+        const float t = Dot(along, Vector3(end - other.from)) / LengthSquared(along);
+        if (!(t >= 0 && t <= 1)) continue;
+        const Vector3 between = other.At(t) - end;
+        const float gap = Dot(manifold.normal, between) * (own == 0 ? 1.0f : -1.0f);
+        const float square = Max(LengthSquared(between) - gap * gap, 0.0f);
+        if (square > 0.25f * radius * radius) continue;
+        // The surfaces are round beside their edges.
+        const float separation = gap + radius - Sqrt(radius * radius - square);
+        const Vector3 onCore = own == 0 ? end : Vector3(end - manifold.normal * separation);
+        ends[count++] = {onCore + manifold.normal * pair.a.ConvexRadius(), separation - pair.RadiusSum(),
+                         VertexFeature(own == 0, 0x100 + names[own][i % 2])};
+    }
+    AddPointsAhead<8>(
+        count, [&](int i) { return ends[i]; }, tolerances.reach - pair.RadiusSum(), tolerances.Apart(),
+        tolerances.prefer, {}, manifold);
+}
+
 }  // namespace
 
 void BuildConvexContact(const SupportPair& pair, const KnownContact& known, const ContactTolerances& tolerances,
@@ -231,6 +276,7 @@ void BuildConvexContact(const SupportPair& pair, const KnownContact& known, cons
     if (!TryParallelEdges(pair, faceA, faceB, known, tolerances, manifold))
         AddPoint(pair, known.onA, known.separation, VertexFeature(true, 0), manifold);
     AddFacesAhead(pair, faceA, faceB, tolerances, manifold);
+    AddEndsAhead(pair, faceA, faceB, tolerances, manifold);
 }
 
 void BuildOverFaceOfB(const SupportPair& pair, const Vector3& axis, const ContactTolerances& tolerances,
