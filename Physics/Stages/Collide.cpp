@@ -60,7 +60,8 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     const BodyPose& poseA = stores.bodies.poses[pair.bodyA];
     const BodyPose& poseB = stores.bodies.poses[pair.bodyB];
     const uint32_t now = static_cast<uint32_t>(stores.step.number);
-    if ((poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) && !Overlap(stores.colliders, pair))
+    if (!stores.IsSecondPass() && (poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) &&
+        !Overlap(stores.colliders, pair))
         return PairChange::Dead;
 
     const PairShapes shapes = ShapesOf(stores.colliders, pair);
@@ -74,7 +75,7 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     if (hardlyMoved && !stores.IsSecondPass()) {
         ++findings.kept;
     } else {
-        if (hardlyMoved) --findings.kept;  // counted by the first pass
+        if (hardlyMoved && changes[index] != PairChange::Dead) --findings.kept;  // counted by the first pass
         Manifold manifold;
         FindManifold(stores, view, reachAhead, manifold, findings);
         if (pair.contact == PairStore::kNone) {
@@ -230,8 +231,8 @@ std::span<const uint32_t> MergeDeflections(const CollideStores& stores, PairUpda
     return deflectionOf;
 }
 
-// Whether the contacts of a pair are to be found again: not of one that leaves the step, nor where the listener ignores
-// them, nor of the one that deflects its bodies.
+// Whether the contacts of a pair are to be found again: not where the listener ignores them, nor of the one that
+// deflects its bodies. A pair may have ended because bounds extend along the velocity of the start of the step.
 bool MayCollideAgain(const CollideStores& stores, std::span<const PairChange> changes, uint32_t index) {
     const PairStore& pairs = stores.pairs;
     const auto isByOther = [&](uint32_t body, uint32_t otherBody) {
@@ -241,14 +242,20 @@ bool MayCollideAgain(const CollideStores& stores, std::span<const PairChange> ch
     const Pair& pair = pairs.pairs[index];
     if (!isByOther(pair.bodyA, pair.bodyB) && !isByOther(pair.bodyB, pair.bodyA)) return false;
     if (!pairs.active.Contains(index) || pairs.pairs[index].isMore) return false;
-    if (changes[index] == PairChange::Dead || changes[index] == PairChange::WakesOther) return false;
+    if (changes[index] == PairChange::WakesOther) return false;
+    if (changes[index] == PairChange::Dead && pair.surface) return false;
     for (; index != PairStore::kNone; index = pairs.MoreOf(index))
         if (pairs.pairs[index].pointCount > 0 && !pairs.pairs[index].touching) return false;
     return true;
 }
 
 // The change in this step of a pair that was collided twice.
-PairChange Combine(PairChange first, PairChange second) {
+PairChange Combine(PairChange first, PairChange second, Pair& pair) {
+    if (first == PairChange::Dead) {
+        if (pair.pointCount > 0) return second;
+        pair.touching |= second == PairChange::Ended;  // it is removed as it was
+        return PairChange::Dead;
+    }
     const bool isBackAsBefore = (first == PairChange::Ended && second == PairChange::Began) ||
                                 (first == PairChange::Began && second == PairChange::Ended);
     if (isBackAsBefore) return PairChange::None;
@@ -283,6 +290,7 @@ void CollideDeflected(CollideStores stores, PairUpdates& updates, const StepWork
     visitManifolds([&](uint32_t index) {
         const Pair& pair = pairs.pairs[index];
         before.push_back(updates.changes[index]);
+        if (updates.changes[index] == PairChange::Dead) return;
         updates.changes[index] = PairChange::None;
         counts.contacts -= pair.touching;  // counted again
         counts.points -= pair.touching ? pair.pointCount : 0;
@@ -290,7 +298,9 @@ void CollideDeflected(CollideStores stores, PairUpdates& updates, const StepWork
     CollideListed(stores, list, updates.changes, workers);
     AddNewContacts(stores, updates, workers);
     size_t next = 0;
-    visitManifolds([&](uint32_t index) { updates.changes[index] = Combine(before[next++], updates.changes[index]); });
+    visitManifolds([&](uint32_t index) { 
+        updates.changes[index] = Combine(before[next++], updates.changes[index], pairs.pairs[index]);
+    });
     AddMoreManifolds(stores, updates, workers.findings);
 }
 
