@@ -31,7 +31,8 @@ SurfaceManifold WithSurfaceFeatures(const TriangleView& view, const Manifold& ma
 
 }  // namespace
 
-void InternalEdgeFilter::Clear() {
+void InternalEdgeFilter::Begin(bool facesAhead) {
+    facesAhead_ = facesAhead;
     deferred_.clear();
     covered_.clear();
     contacts_.clear();
@@ -83,6 +84,7 @@ void InternalEdgeFilter::Defer(const TriangleView& view, const Vector3& axis, co
     deferred.vertices[0] = view.vertexIds[nearest[0]];
     deferred.vertices[1] = view.vertexIds[nearest[count >= 2 ? 1 : 0]];
     deferred.onFace = WithSurfaceFeatures(view, onFace);
+    deferred.isOnFace = !isAtEdge;
     deferred.contact = isAtEdge ? WithSurfaceFeatures(view, manifold) : deferred.onFace;
     deferred.separation = DeepestSeparation(deferred.contact.manifold);
     deferred_.push_back(deferred);
@@ -106,6 +108,7 @@ bool InternalEdgeFilter::DeferToNeighbor(const TriangleView& view, const Triangl
     deferred.vertices[1] = view.vertexIds[count == 1 ? (first + 1) % 3 : first];
     deferred.separation = DeepestSeparation(onFace);
     deferred.active = false;
+    deferred.isOnFace = true;
     deferred_.push_back(deferred);
     return true;
 }
@@ -137,8 +140,9 @@ Array<SurfaceManifold>& InternalEdgeFilter::Resolve() {
         const bool isEdgeCovered = isCovered(deferred.vertices[0]) && isCovered(deferred.vertices[1]);
         // Points on the face are kept, although the neighbor is closer: without them a shape across two faces would
         // rock.
-        if (!isEdgeCovered) contacts_.push_back(deferred.contact);
-        else if (deferred.onFace.manifold.pointCount > 0) contacts_.push_back(deferred.onFace);
+        const bool isFace = isEdgeCovered || deferred.isOnFace;
+        if (!isFace) contacts_.push_back(deferred.contact);
+        if ((isFace || facesAhead_) && deferred.onFace.manifold.pointCount > 0) contacts_.push_back(deferred.onFace);
         isCovered(deferred.vertices[0]) = isCovered(deferred.vertices[1]) = 1;
     }
     return contacts_;
