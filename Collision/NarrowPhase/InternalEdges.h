@@ -21,8 +21,8 @@ public:
     // what makes an edge active.
     static constexpr float kFlatCosine = 0.9945f;
 
-    // facesAhead: contacts with edges do not replace those with the triangle's face, which the shape may reach within the
-    // step.
+    // facesAhead: contacts with edges do not replace those with the triangle's face, which the shape may reach within
+    // the step.
     void Begin(bool facesAhead);
     void AddFace(const TriangleView& view, const Manifold& manifold);
     // Adds the closest feature of a triangle: its face, or one of its edges or corners. `axis`: unit, towards the
@@ -43,7 +43,7 @@ private:
         uint32_t vertices[2];  // ids; equal for a corner
         float separation;      // m, of the deepest point
         bool active;
-        bool isOnFace;    // `contact` is onFace
+        bool isOnFace;  // `contact` is onFace
     };
 
     void Defer(const TriangleView& view, const Vector3& axis, const Manifold& manifold, const Manifold& onFace);

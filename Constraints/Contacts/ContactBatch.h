@@ -199,8 +199,8 @@ void UpdateSeparations(ContactBatch<N, kFixedB>& batch, BodyState* states, const
 template <int N, bool kFixedB>
 void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
-// The same iteration over one lane, only for overlaps that have grown too much in the step (kMostDeepening), and back to
-// what is allowed. Updates the separations. Returns whether it moved the bodies.
+// The same iteration over one lane, only for overlaps that have grown too much in the step (kMostDeepening), and back
+// to what is allowed. Updates the separations. Returns whether it moved the bodies.
 template <int N, bool kFixedB>
 bool LimitDepth(ContactBatch<N, kFixedB>& batch, int lane, BodyState* states, const ContactSolveSettings& settings);
 

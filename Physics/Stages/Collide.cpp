@@ -298,7 +298,7 @@ void CollideDeflected(CollideStores stores, PairUpdates& updates, const StepWork
     CollideListed(stores, list, updates.changes, workers);
     AddNewContacts(stores, updates, workers);
     size_t next = 0;
-    visitManifolds([&](uint32_t index) { 
+    visitManifolds([&](uint32_t index) {
         updates.changes[index] = Combine(before[next++], updates.changes[index], pairs.pairs[index]);
     });
     AddMoreManifolds(stores, updates, workers.findings);
@@ -345,7 +345,8 @@ bool WakeHit(const PairStore& pairs, std::span<PairChange> changes, const SleepS
         const Pair& pair = pairs.pairs[index];
         WakeBody(stores, pair.bodyA);
         if (!pair.fixedB) WakeBody(stores, pair.bodyB);
-        changes[index] = pair.touching ? PairChange::Began : PairChange::None;
+        // Of several manifolds of a surface, it is another one that touches the sleeping body.
+        changes[index] = pair.touching ? PairChange::Began : PairChange::Ended;
         woke = true;
     });
     return woke;

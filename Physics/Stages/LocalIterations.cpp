@@ -49,6 +49,7 @@ bool AreUneven(const BodyStore& bodies, uint32_t a, uint32_t b) {
 }  // namespace
 
 LocalMemory::LocalMemory(const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch) {
+    if (CountContacts(layout) == 0) return;
     float least = std::numeric_limits<float>::infinity(), most = 0;
     for (const uint32_t body : layout.bodies) {
         least = std::min(least, bodies.masses[body].inverseMass);
@@ -100,7 +101,7 @@ void LocalIterations::NoteDeepened(const ContactBatch<N, kFixedB>& batch, uint8_
         if (batch.deepened >> lane & 1 && !IsJointed(batch.bodyA[lane], SecondBody(batch, lane)))
             lastDeepened_.store(substep + 1, std::memory_order_relaxed);
 }
-#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                 \
+#define FULCRUM_INSTANTIATE(lanes, fixedB)                                                  \
     template void LocalIterations::MarkBodies(const ContactBatch<lanes, fixedB>&, uint8_t); \
     template void LocalIterations::NoteDeepened(const ContactBatch<lanes, fixedB>&, uint8_t);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE, false)

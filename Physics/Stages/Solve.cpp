@@ -250,8 +250,7 @@ private:
 
     // Additional iterations over single contacts.
     void RunIterated(Verb verb, uint8_t substep) {
-        if (verb == Verb::LimitDepths)
-            return local_.LimitDepths(bodies_.states.data(), ContactSettingsAt(substep, 1));
+        if (verb == Verb::LimitDepths) return local_.LimitDepths(bodies_.states.data(), ContactSettingsAt(substep, 1));
         const bool relax = verb == Verb::IterateRelax;
         ContactSolveSettings settings = ContactSettingsAt(substep, relax ? 1 : 0.5f);
         // Friction, too: what many iterations push would slip away.
@@ -354,7 +353,8 @@ private:
     void NoteOutdated(const Batch& batch, uint8_t substep) {
         if ((batch.rotated | batch.slid) != 0) lastOutdated_.store(substep + 1, std::memory_order_relaxed);
     }
-    // Whether no contact is outdated at the beginning of this substep, has a large velocity error in it, or is too deep.
+    // Whether no contact is outdated at the beginning of this substep, has a large velocity error in it, or is too
+    // deep.
     bool IsSkipped(Verb verb, uint8_t substep) const {
         if (verb == Verb::LimitDepths) return !local_.IsAnyTooDeepIn(substep);
         if (IsSerial(verb)) return !local_.AreNeededIn(substep);

@@ -2,6 +2,7 @@
 #include "NarrowPhaseTesting.h"
 
 #include <Fulcrum/Collision/NarrowPhase/ManifoldReduction.h>
+#include <Fulcrum/Collision/Shapes/RoundShapes.h>
 
 #include <gtest/gtest.h>
 
@@ -277,6 +278,31 @@ TEST(ManifoldReduction, OfPointsInOnePlaceTakesOne) {
     for (int i = 0; i < 9; ++i) points.Add(2, 3, -0.01f);
     int chosen[4];
     EXPECT_EQ(ChooseFour(points, 1e-4f, chosen), 1);
+}
+
+// Two cylinders that lie across each other at a small angle touch in one point. If they move far within the step, the
+// ends beside it count, too: an end at l from the other's edge has what lies between the circles of their sides there.
+TEST(EndsAhead, OfNearlyParallelCylindersArePointsWithinReach) {
+    const float radius = 0.3f, half = 1, angle = 0.1f, gap = 0.01f;
+    const ConvexPtr cylinder = Cylinder::Create(half, radius).Value();
+    // Both along y in their own frames, B beside A in x and turned about x.
+    const RelativePose pose{Vector3(2 * radius + gap, 0, 0), {std::sin(angle / 2), 0, 0, std::cos(angle / 2)}};
+    const Manifold near = CollideCold(cylinder, cylinder, pose, {.speculativeDistance = 0.02f});
+    ASSERT_EQ(near.pointCount, 1);
+    const Manifold fast = CollideCold(cylinder, cylinder, pose, {.speculativeDistance = 0.2f});
+    ASSERT_GT(fast.pointCount, 2);
+    const float beside = half * std::sin(angle);
+    const float separation = gap + radius - std::sqrt(radius * radius - beside * beside);
+    int ends = 0;
+    for (int i = 0; i < fast.pointCount; ++i) {
+        const ManifoldPoint& point = fast.points[i];
+        if (std::fabs(point.positionOnA.y()) < 0.5f * half) continue;
+        ++ends;
+        EXPECT_NEAR(point.separation, separation, 1e-3f);
+        EXPECT_NEAR(std::fabs(point.positionOnA.y()), half, 0.01f);
+    }
+    EXPECT_GE(ends, 2);
+    EXPECT_EQ(Features(fast).size(), static_cast<size_t>(fast.pointCount));
 }
 
 }  // namespace
