@@ -166,10 +166,7 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     for (int k = 0; k < 3; ++k)
         reach += SpringTravel(axes_[static_cast<size_t>(k)].motor.spring, Abs(motion.toTarget[k]), pose.dt);
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
-    // A curved edge is linearized at the predicted swing.
-    const bool curves = IsLimited(y) && IsLimited(z) && limits.shape == SwingShape::Ellipse;
-    const auto [frameB, time] = curves ? pose.FrameBAhead() : std::pair(pose.frameB, 0.0f);
-    const SwingTwist turned = Decompose(pose.frameA.Conjugate() * frameB);
+    const SwingTwist turned = Decompose(pose.frameA.Conjugate() * pose.frameB);
     const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
     if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach) AddSwingLimits(list, turned, limits);
     // If the x axes are nearly opposite, twist is ill-defined, and its limit may work against the swing limit that
@@ -179,11 +176,11 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
         turned.swing.w < kOpposite &&
         std::any_of(list.begin(), list.end(), [](const RotationLimit& limit) { return limit.error < -kFarOut; });
     if (!isSwungFar) AddTwistLimits(list, turned, limits.twist);
-    // Transforms the limit's axis to world space.
+    // Transforms the limit to world space.
     for (int i = 0; i < list.count; ++i) {
         RotationLimit& limit = list.limits[static_cast<size_t>(i)];
         limit.axis = Rotate(pose.frameA, limit.axis);
-        limit.error -= Dot(limit.axis, motion.velocity) * time;
+        limit.pole = Rotate(pose.frameA, limit.pole);
     }
     AddMotorRows(pose, motion, list, firstSlot, rows);
     AddLimitRows(pose, motion, list, firstSlot, rows);
@@ -196,6 +193,15 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
         const SpringSettings& spring = axes_[axis].limits.spring;
         JointRow row;
         pose.SetAbout(row, limit.axis);
+        // The x axes of both frames.
+        const Vector3 ofA = ToMatrix(pose.frameA).x, ofB = motion.axes.x;
+        if (axis == 0) {
+            pose.SetPivot(row, JointRow::Pivot::Between, ofA, ofB);
+        } else if (!limit.pole.isZero(0)) {
+            // Of an edge that is not reached yet the axis is that of its nearest point.
+            const Vector3 nearest = ofB - limit.axis * Dot(limit.axis, ofB);
+            pose.SetPivot(row, JointRow::Pivot::Across, limit.pole, Normalized(nearest, ofB));
+        }
         if (limit.isLocked) {
             AddLockRow(spring, row, limit.error, firstSlot + SlotOfLimit(limit.slot), rows);
             continue;

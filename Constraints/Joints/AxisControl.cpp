@@ -15,6 +15,9 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
     row.jacobian = {{j.a.linear * sign, j.a.angular * sign}, {j.b.linear * sign, j.b.angular * sign}};
     row.turnsWithA = motion.turnsWithA;
     row.radial = motion.radial;
+    row.pivot = motion.pivot;
+    row.ofA = motion.ofA;
+    row.ofB = motion.ofB;
     row.about = motion.about;
     return row;
 }

@@ -94,11 +94,13 @@ struct JointRows {
     // is (0, 1).
     Real openAbove, gapRate;
     RowSoftness<Real> openSoftness;
-    Real turnsWithA;  // 1: J rotates with A from substep to substep
-    Real radial;      // 1: the row acts along the line between the anchors and rotates with it
-    Real about;       // 1: its error is an angle
-    Real waits;       // 1: inactive in this step, because the joint is far apart
-    Real isLock;      // 1: one of the block of lock rows, see JointBatch::lockRowCount
+    Real turnsWithA;       // 1: J rotates with A from substep to substep
+    Real radial;           // 1: the row acts along the line between the anchors and rotates with it
+    Real across, between;  // 1: that JointRow::Pivot
+    Vec3<Real> ofA, ofB;   // its directions
+    Real about;            // 1: its error is an angle
+    Real waits;            // 1: inactive in this step, because the joint is far apart
+    Real isLock;           // 1: one of the block of lock rows, see JointBatch::lockRowCount
     // Change of the impulses of the block's rows by a unit of impulse.
     Real lockRows[JointRowList::kMostLocks];
     // kg or kg m2: effective mass without the reaction of the block, which gives springs their stiffness.
@@ -119,10 +121,10 @@ struct JointBatch {
     uint32_t strained;                // bit i: at the start of the step, see JointStrain.h
     LinearLock linear;
     AngularLock angular;
-    uint32_t rowCount;           // maximum over the lanes
-    uint32_t rowRoom;            // the most that the types may add
-    bool rowsTurnWithA, radial;  // set if any row of any lane has it
-    bool turning;                // inertias of some lane turn from substep to substep: they are read again
+    uint32_t rowCount;                   // maximum over the lanes
+    uint32_t rowRoom;                    // the most that the types may add
+    bool rowsTurnWithA, radial, pivots;  // set if any row of any lane has it
+    bool turning;                        // inertias of some lane turn from substep to substep: they are read again
     JointRows<N>* rows;
     // Rows that are locks (JointRow::isLock) are solved as one block, by elimination: the response of each includes the
     // reaction of those before it, so that one pass satisfies all; that of other rows includes the reaction of the

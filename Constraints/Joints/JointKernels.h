@@ -353,6 +353,29 @@ FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a,
     if constexpr (kLinear != LinearLock::None) add(LinearPart<kLinear>(batch), x.linear);
 }
 
+// Rotates a row with both bodies (JointRow::Pivot), where its axis is well-defined.
+template <int N>
+FULCRUM_FORCE_INLINE void PivotRow(JointRows<N>& row, const Mat3<Wide<N>>& turnA, const Mat3<Wide<N>>& turnB) {
+    using Real = Wide<N>;
+    constexpr float kLeast = 0.01f;  // sine squared
+    const Real half(0.5f), zero(0.0f), one(1.0f);
+    row.ofA = turnA * row.ofA;
+    row.ofB = turnB * row.ofB;
+    const Vec3<Real> across = Cross<Real>(row.ofA, row.ofB), between = row.ofA + row.ofB;
+    Vec3<Real> axis;
+    for (int k = 0; k < 3; ++k) axis[k] = Select(row.across > half, across[k], between[k]);
+    const Real squared = Dot<Real>(axis, axis);
+    const auto pivots = (row.across + row.between > half) & (squared > Real(kLeast));
+    RowJacobian<Real> j = row.part.GetJacobian();
+    const Real length = one / Sqrt(Select(pivots, squared, one));
+    axis = axis * Select(Dot<Real>(axis, j.b.angular) < zero, -length, length);
+    for (int k = 0; k < 3; ++k) {
+        j.a.angular[k] = Select(pivots, axis[k], j.a.angular[k]);
+        j.b.angular[k] = Select(pivots, axis[k], j.b.angular[k]);
+    }
+    row.part.SetJacobian(j);
+}
+
 // Updates the rows' errors and directions after the bodies moved. Errors are integrated incrementally with the rotated
 // directions: a direction that is not rotated would eventually act against the locks.
 template <int N>
@@ -383,9 +406,12 @@ FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a
     batch.wayA = a;
     batch.wayB = b;
     const Mat3<Real> turn = ToMatrix(RotationOf<Real>(moreA.angular));
+    Mat3<Real> turnB;
+    if (batch.pivots) turnB = ToMatrix(RotationOf<Real>(moreB.angular));
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        row.error += RelativeMotion<>(row.part.GetJacobian(), moreA, moreB);
+        const Real error = row.error, before = RelativeMotion<>(row.part.GetJacobian(), moreA, moreB);
+        row.error = error + before;
         if (!batch.rowsTurnWithA) continue;
         const auto turns = row.turnsWithA > Real(0.5f);
         RowJacobian<Real> j = row.part.GetJacobian();
@@ -394,6 +420,11 @@ FULCRUM_FORCE_INLINE void MoveRows(JointBatch<N>& batch, const Twist<Wide<N>>& a
             for (int k = 0; k < 3; ++k) (*v)[k] = Select(turns, turned[k], (*v)[k]);
         }
         row.part.SetJacobian(j);
+        if (!batch.pivots) continue;
+        PivotRow(row, turn, turnB);
+        // Along a circle about the pivot the error does not change.
+        const Real after = RelativeMotion<>(row.part.GetJacobian(), moreA, moreB);
+        row.error = Select(row.across + row.between > Real(0.5f), error + (before + after) * Real(0.5f), row.error);
     }
 }
 
@@ -504,6 +535,15 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     }
 }
 
+// Lanes in which a row's error is corrected in the poses, without velocity. A push along an axis that rotates with the
+// bodies could not be removed by relax iterations, whose axis is another one: what is left is along the motion, and
+// bodies that slid along the edge of a cone were accelerated by it without bound.
+template <int N>
+FULCRUM_FORCE_INLINE WideMask<N> CorrectsPose(const JointRows<N>& row) {
+    using Real = Wide<N>;
+    return (row.across + row.between > Real(0.5f)) & (row.mostPush < Real(JointRow::kUnlimited));
+}
+
 // After SetUpRows: bias and softness of the rows for velocity iterations, and for relax iterations, which do not
 // correct errors.
 template <int N>
@@ -515,6 +555,7 @@ FULCRUM_FORCE_INLINE void SetRowPush(JointBatch<N>& batch, const JointSolveSetti
         Real push = Clamp(row.pushRate * row.error, -row.mostPush, row.mostPush);
         // Springs keep their bias in any case: it is their force.
         if (!settings.pushes) push = Select(row.mostPush < Real(JointRow::kUnlimited), Real(0.0f), push);
+        if (batch.pivots) push = Select(CorrectsPose(row), Real(0.0f), push);
         push = push - closed.massScale * row.speed;
         const Real gap = open.massScale * (row.error * row.gapRate);
         const auto isOpen = row.error > row.openAbove;

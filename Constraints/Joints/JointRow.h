@@ -34,7 +34,11 @@ struct JointRow {
     bool turnsWithA = false;  // J rotates with A from substep to substep; else it is constant
     bool about = false;       // C is an angle, although it may depend on positions, too; set by SetAbout
     bool radial = false;      // acts along the line from A's anchor to B's and rotates with it
-    bool isLock = false;      // Equal rows, the first of the list, that are solved as one block
+    // J of an angle may also rotate with both bodies: about a direction of A across one of B, or halfway between them.
+    enum class Pivot : uint8_t { None, Across, Between };
+    Pivot pivot = Pivot::None;
+    Vector3 ofA = Vector3::Zero(), ofB = Vector3::Zero();  // unit, world: those directions
+    bool isLock = false;  // Equal rows, the first of the list, that are solved as one block
     float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
     SpringSettings spring;
 };

@@ -59,26 +59,25 @@ struct JointPose {
         return velocityB.linear + Cross<float>(velocityB.angular, armB) - velocityA.linear -
                Cross<float>(velocityA.angular, Vector3(armA + offset));
     }
-    // Predicts frame B relative to A; also returns after how many seconds: at the end of the step, or earlier if it
-    // rotates farther than rows may be linearized. A row linearized there, with its error extrapolated back to now,
-    // follows a rotation better than one linearized at the start.
-    std::pair<Quaternion, float> FrameBAhead() const {
-        constexpr float kFarthest = 0.4f;  // rad
-        const Vector3 w = AngularVelocity();
-        const float speed = Length(w), time = speed * dt > kFarthest ? kFarthest / speed : dt;
-        return {RotationFromVector(Vector3(w * time)) * frameB, time};
-    }
     Vector3 AngularVelocity() const { return velocityB.angular - velocityA.angular; }  // rad/s, of B relative to A
     // Set the Jacobian to that of the motion of B's anchor along the unit axis n of A, and to that of the rotation of B
     // relative to A about `axis`; both rotate with A.
     void SetAlong(JointRow& row, const Vector3& n) const {
         row.turnsWithA = true;
         row.about = false;
+        row.pivot = JointRow::Pivot::None;
         row.jacobian = AxisJacobian<float>({armA + offset, armB, n});
     }
     static void SetAbout(JointRow& row, const Vector3& axis) {
         row.turnsWithA = row.about = true;
+        row.pivot = JointRow::Pivot::None;
         row.jacobian = AngleJacobian<float>(axis);
+    }
+    // After SetAbout: the axis is that of the pivot, and stays so while the bodies rotate. ofA, ofB: unit, world.
+    static void SetPivot(JointRow& row, JointRow::Pivot pivot, const Vector3& ofA, const Vector3& ofB) {
+        row.pivot = pivot;
+        row.ofA = ofA;
+        row.ofB = ofB;
     }
     // Current rate of the row's C: J v.
     float SpeedOf(const JointRow& row) const { return RelativeMotion<>(row.jacobian, velocityA, velocityB); }

@@ -38,10 +38,27 @@ void SetLane(RowJacobian<Wide<N>>& lanes, int lane, const RowJacobian<float>& j)
 // Makes a lane one without a row.
 template <int N>
 void ClearLane(JointRows<N>& rows, int lane) {
-    for (Wide<N>* x : {&rows.startError, &rows.error, &rows.speed, &rows.earlier, &rows.lowest, &rows.highest,
-                       &rows.softness.massScale, &rows.softness.impulseScale, &rows.pushRate, &rows.mostPush,
-                       &rows.openAbove, &rows.gapRate, &rows.openSoftness.massScale, &rows.openSoftness.impulseScale,
-                       &rows.turnsWithA, &rows.radial, &rows.about, &rows.waits, &rows.isLock})
+    for (Wide<N>* x : {&rows.startError,
+                       &rows.error,
+                       &rows.speed,
+                       &rows.earlier,
+                       &rows.lowest,
+                       &rows.highest,
+                       &rows.softness.massScale,
+                       &rows.softness.impulseScale,
+                       &rows.pushRate,
+                       &rows.mostPush,
+                       &rows.openAbove,
+                       &rows.gapRate,
+                       &rows.openSoftness.massScale,
+                       &rows.openSoftness.impulseScale,
+                       &rows.turnsWithA,
+                       &rows.radial,
+                       &rows.across,
+                       &rows.between,
+                       &rows.about,
+                       &rows.waits,
+                       &rows.isLock})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
 }
@@ -88,6 +105,10 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.highest.Set(lane, highest);
     rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);
     rows.radial.Set(lane, row.radial ? 1.0f : 0.0f);
+    rows.across.Set(lane, row.pivot == JointRow::Pivot::Across ? 1.0f : 0.0f);
+    rows.between.Set(lane, row.pivot == JointRow::Pivot::Between ? 1.0f : 0.0f);
+    SetLane(rows.ofA, lane, row.ofA);
+    SetLane(rows.ofB, lane, row.ofB);
     rows.about.Set(lane, row.about ? 1.0f : 0.0f);
     rows.isLock.Set(lane, row.isLock ? 1.0f : 0.0f);
     if (std::isfinite(previousImpulse)) impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
@@ -149,7 +170,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
               const ConstSolverBodies& bodies, const JointSolveSettings& settings) {
     batch.rowCount = batch.lockRowCount = 0;
-    batch.rowsTurnWithA = batch.radial = false;
+    batch.rowsTurnWithA = batch.radial = batch.pivots = false;
     batch.wayA = batch.wayB = {};
     if (batch.rowRoom == 0) return;
     JointRowList lists[N];
@@ -199,6 +220,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
                      jacobian, impulse);
             batch.rowsTurnWithA |= list.rows[i].turnsWithA;
             batch.radial |= list.rows[i].radial;
+            batch.pivots |= list.rows[i].pivot != JointRow::Pivot::None;
             if (list.rows[i].isLock && i < JointRowList::kMostLocks) batch.lockRowCount = i + 1;
         }
         rows.part.SetJacobian(jacobian);

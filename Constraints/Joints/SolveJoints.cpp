@@ -215,6 +215,26 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
     return errors;
 }
 
+// Corrects the errors of rows that are not pushed (CorrectsPose), as fast as they would be.
+template <int N>
+[[gnu::noinline]] void CorrectPivots(const JointBatch<N>& batch, BodyState* states,
+                                     const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    constexpr float kFastest = 2;  // rad/s: what one joint of a mechanism is turned by, the others must follow
+    const Real zero(0.0f), h(settings.substepDt);
+    Twist<Real> a, b;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        const auto corrects = CorrectsPose(row) & (row.error <= row.openAbove);
+        const Real most = Min(row.mostPush, Real(kFastest)), error = Clamp(row.pushRate * row.error, -most, most) * h;
+        // What the rows before it have moved already.
+        const Real moved = RelativeMotion<>(row.part.GetJacobian(), a, b);
+        const Real left = Select(row.error < zero, Min(error + moved, zero), error + moved);
+        row.part.SolvePosition(a, b, Select(corrects, left, zero), Real(1.0f));
+    }
+    MoveBodies<N>(batch, states, a, b);
+}
+
 // Calls change(linear lock, angular lock, velocities of A, of B) for the batch and scatters the velocities back.
 template <int N, class Batch, class F>
 FULCRUM_FORCE_INLINE void ChangeLocked(Batch& batch, BodyState* states, F&& change) {
@@ -258,6 +278,7 @@ void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSo
         const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
         if (isPushed.Any()) [[unlikely]]
             TurnAtOnce<linear>(batch, isPushed, a, b);
+        if (batch.pivots && settings.firstPass && settings.pushes) CorrectPivots(batch, bodies.states, settings);
         SetRowRelax(batch);
         SolveAll<true, linear, angular>(batch, a, b);
         Soften<linear, angular>(batch, errors, settings);

@@ -68,14 +68,18 @@ struct RotationLimit {
     Vector3 axis = Vector3::Zero();  // a
     Slot slot = SwingYMaximum;       // an ellipse uses SwingYMaximum
     bool isLocked = false;           // C = 0, in the slot of the maximum; else C >= 0
+    // The edge is a circle about this unit vector, at least nearly, and a is across it and d. Zero if a is constant in
+    // frame A.
+    Vector3 pole = Vector3::Zero();
 };
 
 struct RotationLimitList {
     std::array<RotationLimit, RotationLimit::kSlots> limits;
     int count = 0;
 
-    void Add(RotationLimit::Slot slot, float error, const Vector3& axis, bool isLocked = false) {
-        limits[count++] = {error, axis, slot, isLocked};
+    void Add(RotationLimit::Slot slot, float error, const Vector3& axis, bool isLocked = false,
+             const Vector3& pole = Vector3::Zero()) {
+        limits[count++] = {error, axis, slot, isLocked, pole};
     }
     const RotationLimit* begin() const { return limits.data(); }
     const RotationLimit* end() const { return limits.data() + count; }
@@ -151,6 +155,7 @@ inline RotationLimit NorthOf(const Circle& circle, const Vector3& d, const Vecto
     const float cosine = Length(axis);
     limit.error = Atan2(Dot(circle.pole, d), cosine) - circle.latitude;
     limit.axis = cosine > 1e-6f ? Vector3(axis * (1.0f / cosine)) : across;
+    limit.pole = circle.pole;
     return limit;
 }
 
@@ -216,7 +221,7 @@ struct EllipseEdge {
 
 // alpha <= halfAngle, 0..pi. At alpha = 0 the axis is -y, at 180 degrees it is that of the swing.
 inline RotationLimit ConeLimit(const SwingTwist& r, float halfAngle) {
-    return {halfAngle - r.alpha, Vector3(0.0f, -r.e1, -r.e2), RotationLimit::SwingYMaximum, false};
+    return {halfAngle - r.alpha, Vector3(0.0f, -r.e1, -r.e2), RotationLimit::SwingYMaximum, false, Vector3(1, 0, 0)};
 }
 
 // halfY, halfZ > 0, < pi. Its error is at least the smaller one less alpha: not needed for joints far inside.
@@ -234,6 +239,7 @@ inline RotationLimit EllipseLimit(const SwingTwist& r, float halfY, float halfZ)
     RotationLimit limit;
     limit.error = Atan2(Dot(d, Cross(at, tangent)), Dot(d, at));
     limit.axis = detail::FromSwingPlane(Vector3(-tangent));
+    limit.pole = Normalized(Vector3(Vector3(1, 0, 0) - limit.axis * limit.axis.x()), Vector3(1, 0, 0));
     return limit;
 }
 
@@ -254,7 +260,7 @@ struct Pyramid {
         const Vector3 across =
             face < 2 ? Vector3(0, 0, -1) : Vector3(0, 1, 0);  // the y and z axes in these coordinates
         RotationLimit limit = NorthOf(Face(face), d, Vector3(-across));
-        if (face % 2 == 0) limit = {-limit.error, -limit.axis, limit.slot, false};
+        if (face % 2 == 0) limit = {-limit.error, -limit.axis, limit.slot, false, limit.pole};
         limit.slot = static_cast<RotationLimit::Slot>(face);
         return limit;
     }
@@ -301,6 +307,7 @@ struct Pyramid {
             const float sine = Length(axis), error = -Atan2(sine, Dot(d, corner));
             if (!(error > best.error)) continue;
             best.error = error;
+            best.pole.setZero();
             // At the corner itself the face's axis is used; opposite to it, any perpendicular axis.
             best.axis = sine > 1e-6f    ? Vector3(axis * (1.0f / sine))
                         : error > -1.0f ? faces[slot].axis
@@ -331,11 +338,13 @@ inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const
     constexpr float kShortAngle = 0.1f;  // rad; farther out the circles deviate from the faces
     if (worst >= 0) {
         const RotationLimit back = pyramid.RotationToRegion(d, faces, isBeyond, faces[worst].slot);
-        list.Add(back.slot, back.error, detail::FromSwingPlane(back.axis));
+        list.Add(back.slot, back.error, detail::FromSwingPlane(back.axis), false, detail::FromSwingPlane(back.pole));
         if (back.error < -kShortAngle) return;
     }
     for (int face = 0; face < 4; ++face)
-        if (!isBeyond[face]) list.Add(faces[face].slot, faces[face].error, detail::FromSwingPlane(faces[face].axis));
+        if (!isBeyond[face])
+            list.Add(faces[face].slot, faces[face].error, detail::FromSwingPlane(faces[face].axis), false,
+                     detail::FromSwingPlane(faces[face].pole));
 }
 
 // Adds the rows of a swing's limits: none if both axes are free, else one to four.
@@ -355,10 +364,10 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
                              const AngleRange& range) {
         const RotationLimit north = detail::NorthOf({pole, 0.0f}, d, across);
         constexpr float kQuarterTurn = 0.5f * AngleRange::kHalfTurn;
-        if (range.IsLocked()) return list.Add(slot, north.error, north.axis, true);
-        if (range.maximum < kQuarterTurn) list.Add(slot, range.maximum - north.error, -north.axis);
+        if (range.IsLocked()) return list.Add(slot, north.error, north.axis, true, pole);
+        if (range.maximum < kQuarterTurn) list.Add(slot, range.maximum - north.error, -north.axis, false, pole);
         if (range.minimum > -kQuarterTurn)
-            list.Add(static_cast<RotationLimit::Slot>(slot + 1), north.error - range.minimum, north.axis);
+            list.Add(static_cast<RotationLimit::Slot>(slot + 1), north.error - range.minimum, north.axis, false, pole);
     };
     // The longitude of d about `axis`; d . axis is its height above the great circle.
     const auto addLongitude = [&](RotationLimit::Slot slot, const Vector3& axis, float sideways,
@@ -375,7 +384,7 @@ inline void AddSwingLimits(RotationLimitList& list, const SwingTwist& r, const S
     if (y.IsLocked() || z.IsLocked() || y.IsFree() || z.IsFree()) return;
     if (limits.shape == SwingShape::Pyramid) return AddPyramidLimits(list, r, y, z);
     const RotationLimit ellipse = EllipseLimit(r, y.maximum, z.maximum);
-    list.Add(ellipse.slot, ellipse.error, ellipse.axis);
+    list.Add(ellipse.slot, ellipse.error, ellipse.axis, false, ellipse.pole);
 }
 
 // The axis about which rotation increases the twist, at the rate 1 / cos(alpha / 2).

@@ -49,11 +49,10 @@ JointLocks ConeJoint::Locks() const {
 }
 
 void ConeJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
-    const auto [frameB, time] = pose.FrameBAhead();
-    Swing swing = SwingOf(pose.frameA, frameB);
+    const Swing swing = SwingOf(pose.frameA, pose.frameB);
     JointRow motion;
     pose.SetAbout(motion, swing.axis);
-    swing.angle -= pose.SpeedOf(motion) * time;
+    pose.SetPivot(motion, JointRow::Pivot::Across, ToMatrix(pose.frameA).x, ToMatrix(pose.frameB).x);
     // Rotation perpendicular to e increases the angle, too, the more the closer the axes are: use the whole angular
     // velocity.
     const Vector3 angular = pose.AngularVelocity();

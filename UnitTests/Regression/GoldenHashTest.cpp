@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x910a1f4b6d1676caull;
-constexpr uint64_t kGoldenHashOfJoints = 0x38a7086618423441ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x1c3e37cf614fa67aull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x6be3617a220f5108ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0xa15507e4e361be77ull;
+constexpr uint64_t kGoldenHash = 0x6d376592e74fffd2ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x930e2d08215a3717ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x8a2412efce4a6c1aull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x8b6f488df4412502ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x19149cfb5cb3d767ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -12,17 +12,17 @@ namespace {
 
 constexpr uint8_t kLayer = 1;  // collides with nothing of itself
 
-enum class Kind : uint8_t { Hinge, Ball };
+enum class Kind : uint8_t { Hinge, Ball, Twist, Swing, Cone };
 
-// J/kg: by how much the energy of two bodies, one below the other, exceeds that at the start, at most in 20 s.
-double LargestGain(Kind kind, int substeps, uint32_t seed) {
+// J/kg: by how much the energy of some bodies, one above the other, exceeds that at the start, at most in 20 s.
+double LargestGain(Kind kind, int bodies, int substeps, uint32_t seed) {
     SystemSettings settings = NoSleep();
     settings.solver.substeps = substeps;
     settings.layerCollides[kLayer] &= ~(1u << kLayer);
     TestWorld world(settings);
     RandomPoses random(seed);
     std::vector<BodyId> ids;
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i <= bodies; ++i) {
         const float a = random.Between(0.25f, 0.5f), b = random.Between(0.25f, 0.5f), c = random.Between(0.25f, 0.5f);
         const ShapePtr shapes[] = {BoxOf(a, b, c), BoxOf(a, 0.12f, c), BoxOf(0.1f, 2 * b, 0.1f)};
         const float x = random.Between(-1, 1), z = random.Between(-1, 1);
@@ -41,10 +41,14 @@ double LargestGain(Kind kind, int substeps, uint32_t seed) {
             auto hinge = Of<HingeJointSettings>(between);
             hinge.angle = Limited(low, high);
             Join(world, hinge);
+        } else if (kind == Kind::Cone) {
+            auto cone = Of<ConeJointSettings>(between);
+            cone.halfAngle = static_cast<float>(high);
+            Join(world, cone);
         } else {
             auto ball = Of<SwingTwistJointSettings>(between);
-            ball.twist = Limited(low, high);
-            ball.swingY = ball.swingZ = Limited(-high, high);
+            if (kind != Kind::Swing) ball.twist = Limited(low, high);
+            if (kind != Kind::Twist) ball.swingY = ball.swingZ = Limited(-high, high);
             Join(world, ball);
         }
     }
@@ -66,13 +70,14 @@ double LargestGain(Kind kind, int substeps, uint32_t seed) {
     return gain;
 }
 
-// most: J/kg. Before, 21 and 10 of 200 gained more than 1 J/kg with hinges, 34 and 18 with ball joints, the worst 8896.
+// most: J/kg, of two bodies. Before, 21 and 10 of 200 gained more than 1 J/kg with hinges, 34 and 18 with ball joints,
+// the worst 8896.
 void HardlyGainEnergy(Kind kind, double most, int mostAboveOne) {
     for (const int substeps : {4, 16}) {
         double worst = 0;
         int above = 0;
         for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(200)); ++seed) {
-            const double gain = LargestGain(kind, substeps, seed);
+            const double gain = LargestGain(kind, 2, substeps, seed);
             worst = std::max(worst, gain);
             above += gain > 1;
         }
@@ -82,7 +87,17 @@ void HardlyGainEnergy(Kind kind, double most, int mostAboveOne) {
 }
 
 TEST(HangingMechanisms, HingesAtTheirLimitsHardlyGainEnergy) { HardlyGainEnergy(Kind::Hinge, 20, 4); }
-TEST(HangingMechanisms, BallJointsAtTheirLimitsHardlyGainEnergy) { HardlyGainEnergy(Kind::Ball, 500, 10); }
+TEST(HangingMechanisms, BallJointsAtTheirLimitsHardlyGainEnergy) { HardlyGainEnergy(Kind::Ball, 100, 8); }
+
+// A body that hangs from one joint, and falls over, slides along the edge of its limits or flips past 180 degrees. With
+// 64 substeps 25 of 60 gained up to 34 kJ/kg with a limit of twist, 5 up to 40 kJ/kg with one of the swing.
+TEST(HangingMechanisms, ABodyAtALimitOfItsRotationKeepsItsEnergy) {
+    for (const Kind kind : {Kind::Twist, Kind::Swing, Kind::Cone, Kind::Ball})
+        for (const int substeps : {4, 16, 64})
+            for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(substeps == 64 ? 30 : 100)); ++seed)
+                EXPECT_LT(LargestGain(kind, 1, substeps, seed), substeps == 4 ? 5 : 1)
+                    << "kind " << static_cast<int>(kind) << ", " << substeps << " substeps, seed " << seed;
+}
 
 }  // namespace
 }  // namespace fulcrum::testing

@@ -72,21 +72,33 @@ TEST(SwingTwistJoint, LimitRowsAreTheDerivativesOfTheWayToTheEdge) {
         }
 }
 
+// The axis turns with both bodies, so that the error is right where the swing goes: on a circle, and nearly on an
+// ellipse.
 TEST(SwingTwistJoint, ACurvedEdgeIsRightWhereTheSwingGoes) {
-    SwingTwistJoint joint({}, Limited(-0.8f, 0.8f), Limited(-1.2f, 1.2f), SwingShape::Ellipse);
-    JointBodies bodies;
-    bodies.PlaceB(Vector3::Zero(), RotationFromVector(Vector3(0, 0.5f, -0.4f)));
-    const Vector3 way(0, 0.15f, -0.35f);
-    bodies.velocity[1].angular = way * (1 / bodies.Pose().dt);
-    auto rows = RowsOf(joint, bodies.Pose());
-    ASSERT_EQ(rows.size(), 1u);
-    const auto [slot, row] = *rows.begin();
-    // There, at rest.
-    bodies.velocity[1].angular = Vector3::Zero();
-    bodies.Move(1, {Vector3::Zero(), way});
-    auto there = RowsOf(joint, bodies.Pose());
-    ASSERT_TRUE(there.contains(slot));
-    EXPECT_NEAR(row.error + Dot(row.jacobian.b.angular, way), there[slot].error, 1e-5f);
+    for (const float wide : {0.8f, 1.2f}) {
+        SwingTwistJoint joint({}, Limited(-0.8f, 0.8f), Limited(-wide, wide), SwingShape::Ellipse);
+        JointBodies bodies;
+        bodies.PlaceB(Vector3::Zero(), RotationFromVector(Vector3(0, 0.5f, -0.4f)));
+        const Vector3 way(0, 0.15f, -0.35f);
+        bodies.velocity[1].angular = way * (1 / bodies.Pose().dt);
+        auto rows = RowsOf(joint, bodies.Pose());
+        ASSERT_EQ(rows.size(), 1u);
+        const auto [slot, row] = *rows.begin();
+        ASSERT_EQ(row.pivot, JointRow::Pivot::Across);
+        const Vector3 before = row.jacobian.b.angular;
+        EXPECT_NEAR(
+            Length(before - Normalized(Cross(row.ofA, row.ofB))) * Length(before + Normalized(Cross(row.ofA, row.ofB))),
+            0, 1e-5f);
+        Vector3 axis = Normalized(Cross(row.ofA, Rotate(RotationFromVector(way), row.ofB)));
+        if (Dot(axis, before) < 0) axis = -axis;
+        // There, at rest.
+        bodies.velocity[1].angular = Vector3::Zero();
+        bodies.Move(1, {Vector3::Zero(), way});
+        auto there = RowsOf(joint, bodies.Pose());
+        ASSERT_TRUE(there.contains(slot));
+        EXPECT_NEAR(row.error + 0.5f * Dot(Vector3(before + axis), way), there[slot].error, wide > 1 ? 0.02f : 3e-3f);
+        EXPECT_GT(Dot(axis, there[slot].jacobian.b.angular), wide > 1 ? 0.98f : 0.9999f);
+    }
 }
 
 TEST(SwingTwistJoint, LimitsHaveRowsOnlyNearby) {
