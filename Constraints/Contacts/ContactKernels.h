@@ -237,4 +237,19 @@ FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> TotalOf(const ContactBatch<N, kFixe
 // Index into `response` of the pair i < j.
 constexpr int PairIndex(int i, int j) { return i == 0 ? j - 1 : i + j; }
 
+// One Gauss-Seidel sweep over the normal rows, of a position iteration. missing: m, by which each point is to move
+// apart; less what the rows before it move, after the sweep.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> SweepMissing(const ContactBatch<N, kFixedB>& batch, Wide<N>* missing) {
+    using Real = Wide<N>;
+    NormalImpulses<Real> impulses;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        const Real lambda = Max(row.inverseResponse * missing[i], Real(0.0f));
+        for (int j = i + 1; j < batch.pointCount; ++j) missing[j] -= batch.response[PairIndex(i, j)] * lambda;
+        impulses.Add(row, lambda);
+    }
+    return impulses;
+}
+
 }  // namespace fulcrum::contacts

@@ -20,13 +20,7 @@ void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, c
         const Real separation = row.startSeparation + MotionOf(row, motion);
         missing[i] = Min((separation + Real(settings.slop)) * -part, most);
     }
-    NormalImpulses<Real> impulses;
-    for (int i = 0; i < batch.pointCount; ++i) {
-        const auto& row = batch.rows[i];
-        const Real lambda = Max(row.inverseResponse * missing[i], zero);
-        for (int j = i + 1; j < batch.pointCount; ++j) missing[j] -= batch.response[PairIndex(i, j)] * lambda;
-        impulses.Add(row, lambda);
-    }
+    const NormalImpulses<Real> impulses = SweepMissing(batch, missing);
     if (!(impulses.sum > zero).Any()) return;
     ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * impulses.sum,
                             NormalTorque(batch, impulses.sumA, impulses.sumB));

@@ -22,7 +22,7 @@ bool LimitDepth(ContactBatch<N, kFixedB>& batch, int lane, BodyState* states, co
     using Real = Wide<1>;
     ContactBatch<1, kFixedB> single;
     ReadLane(batch, lane, single);
-    const Real zero(0.0f), perDepth = Real(single.inverseSoftDepth);
+    const Real perDepth = Real(single.inverseSoftDepth);
     Twists<1, kFixedB> twists;
     Gather<BodyRow::Displacement>(single, states, twists);
     const NormalMotion<Real> motion =
@@ -38,13 +38,7 @@ bool LimitDepth(ContactBatch<N, kFixedB>& batch, int lane, BodyState* states, co
         missing[i] = tooDeep / perDepth;
     }
     if (!isDeep) return false;
-    NormalImpulses<Real> impulses;
-    for (int i = 0; i < single.pointCount; ++i) {
-        const auto& row = single.rows[i];
-        const Real lambda = Max(row.inverseResponse * missing[i], zero);
-        for (int j = i + 1; j < single.pointCount; ++j) missing[j] -= single.response[PairIndex(i, j)] * lambda;
-        impulses.Add(row, lambda);
-    }
+    const NormalImpulses<Real> impulses = SweepMissing(single, missing);
     const Twists<1, kFixedB> before = twists;
     ApplyToBoth<1, kFixedB>(single, twists, single.normal * impulses.sum,
                             NormalTorque(single, impulses.sumA, impulses.sumB));

@@ -188,13 +188,12 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
 
 void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list,
                                    uint32_t firstSlot, JointRowList& rows) const {
+    const Vector3 ofA = ToMatrix(pose.frameA).x, ofB = motion.axes.x;  // the x axes of both frames
     for (const RotationLimit& limit : list) {
         const size_t axis = AxisOfLimit(limit.slot);
         const SpringSettings& spring = axes_[axis].limits.spring;
         JointRow row;
         pose.SetAbout(row, limit.axis);
-        // The x axes of both frames.
-        const Vector3 ofA = ToMatrix(pose.frameA).x, ofB = motion.axes.x;
         if (axis == 0) {
             pose.SetPivot(row, JointRow::Pivot::Between, ofA, ofB);
         } else if (!limit.pole.isZero(0)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace fulcrum {
 
@@ -95,11 +96,16 @@ void LocalIterations::MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t 
     }
 }
 
+// Of bodies without joints.
+template <int N, bool kFixedB>
+bool LocalIterations::IsTooDeep(const ContactBatch<N, kFixedB>& batch, int lane) const {
+    return batch.deepened >> lane & 1 && !IsJointed(batch.bodyA[lane], SecondBody(batch, lane));
+}
+
 template <int N, bool kFixedB>
 void LocalIterations::NoteDeepened(const ContactBatch<N, kFixedB>& batch, uint8_t substep) {
     for (int lane = 0; lane < batch.count; ++lane)
-        if (batch.deepened >> lane & 1 && !IsJointed(batch.bodyA[lane], SecondBody(batch, lane)))
-            lastDeepened_.store(substep + 1, std::memory_order_relaxed);
+        if (IsTooDeep(batch, lane)) lastDeepened_.store(substep + 1, std::memory_order_relaxed);
 }
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                  \
     template void LocalIterations::MarkBodies(const ContactBatch<lanes, fixedB>&, uint8_t); \
@@ -137,6 +143,7 @@ void LocalIterations::VisitRanges(Visit&& visit) {
 }
 
 void LocalIterations::ListContacts() {
+    if (std::exchange(areListed_, true)) return;
     const auto visitContacts = [&](auto&& visit) {
         VisitRanges([&](auto batches, uint32_t count, uint32_t first) {
             for (uint32_t i = 0; i < count; ++i) {
@@ -221,8 +228,7 @@ void LocalIterations::IterateMarked(Iterate&& iterate) {
 }
 
 void LocalIterations::Run(BodyState* states, const ContactSolveSettings& settings, uint8_t substep, bool relax) {
-    if (!areListed_) ListContacts();
-    areListed_ = true;
+    ListContacts();
     const uint8_t mark = static_cast<uint8_t>(substep + 1);
     for (const uint32_t body : Bodies())
         if (memory_.wrongIn[body] == mark) MarkContactsOf(body);
@@ -237,13 +243,11 @@ void LocalIterations::Run(BodyState* states, const ContactSolveSettings& setting
 }
 
 void LocalIterations::LimitDepths(BodyState* states, const ContactSolveSettings& settings) {
-    if (!areListed_) ListContacts();
-    areListed_ = true;
+    ListContacts();
     VisitRanges([&](auto batches, uint32_t, uint32_t first) {
         for (const auto& batch : batches) {
             for (int lane = 0; batch.deepened >> lane != 0; ++lane)
-                if (batch.deepened >> lane & 1 && !IsJointed(batch.bodyA[lane], SecondBody(batch, lane)))
-                    memory_.iterates[first + static_cast<uint32_t>(lane)] = true;
+                if (IsTooDeep(batch, lane)) memory_.iterates[first + static_cast<uint32_t>(lane)] = true;
             first += WidthOf(batches);
         }
     });

@@ -5,8 +5,8 @@
 // (ContactSolveSettings::mostError), the contacts of both bodies are iterated, and those of all bodies whose contacts
 // turn out to be as wrong, until none is, or the effort for a cluster of such bodies is used up: what many bodies do to
 // each other in a heap is left to the usual iterations. The same where such a light body hits what it lies on. Serial,
-// in the order of the colors. Bodies with joints are left out: their joints would have to be iterated, too. Used by
-// Solve.
+// in the order of the colors. Bodies with joints are left out: their joints would have to be iterated, too. Position
+// iterations in the same way where an overlap has grown too much in the step (LimitDepth). Used by Solve.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
@@ -23,11 +23,11 @@ namespace fulcrum {
 // Scratch memory of all groups of a step. Contacts, and lanes without one, have indices in the order of solving: by
 // group, color, moving before fixed ones; those without a color come before all others.
 struct LocalMemory {
-    // Empty if all bodies have similar masses.
+    // Empty without contacts.
     LocalMemory(const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch);
 
-    std::span<bool> isUneven;              // by body: some contact of it is with a body of different mass
-    std::span<uint8_t> wrongIn;            // by body: the substep, from 1, in which some contact of it was wrong last
+    std::span<bool> isUneven;    // by body: some contact of it is with a body of different mass; empty if there is none
+    std::span<uint8_t> wrongIn;  // by body: the substep, from 1, in which some contact of it was wrong last
     std::span<uint32_t> contactsBegin;     // by body: in `contactsOfBodies`
     std::span<uint32_t> contactsEnd;       // likewise
     std::span<uint32_t> contactsOfBodies;  // two for each contact
@@ -65,6 +65,8 @@ private:
     void MarkBodies(const ContactBatch<N, kFixedB>& batch, uint8_t substep);
     template <int N, bool kFixedB>
     void NoteDeepened(const ContactBatch<N, kFixedB>& batch, uint8_t substep);
+    template <int N, bool kFixedB>
+    bool IsTooDeep(const ContactBatch<N, kFixedB>& batch, int lane) const;
     template <class Visit>
     void VisitRanges(Visit&& visit);
     void ListContacts();
