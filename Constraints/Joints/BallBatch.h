@@ -16,6 +16,7 @@ struct alignas(64) BallBatch {
     int32_t count;
     uint32_t fixedA, fixedB;          // bit i: the body of lane i is not dynamic
     uint32_t kinematicA, kinematicB;  // bit i: not dynamic, but kinematic and moving
+    uint32_t pushed;                  // bit i: as in JointBatch
     bool round;                       // all bodies have isotropic inertia
     bool turning;  // some lane's inertia rotates with its body: inertias are read anew in every substep
 

@@ -44,6 +44,16 @@ FULCRUM_FORCE_INLINE Real FarPush(const Real& wasPulled, const JointSolveSetting
     return Select(wasPulled >= Real(kWasFar), Real(kNearFraction * far), following);
 }
 
+// Whether a joint with a gap in m and these lever arms may be pulled. Some time after a teleport only if the gap is
+// long for them: what a load keeps apart, in a mechanism at its limits, say, a pull would throw about.
+template <class Real>
+FULCRUM_FORCE_INLINE auto MayPull(const Real& gap, const Vec3<Real>& armA, const Vec3<Real>& armB,
+                                  const Real& wasPulled, const Real& secondsOfTeleport) {
+    constexpr float kLeastOfArms = 0.3f;
+    return (secondsOfTeleport > Real(0.0f)) | (wasPulled >= Real(kFollowed)) |
+           (gap * gap > (Dot<Real>(armA, armA) + Dot<Real>(armB, armB)) * Real(kLeastOfArms * kLeastOfArms));
+}
+
 // Marks lanes whose bodies have significant pseudo-velocities.
 template <class Real>
 FULCRUM_FORCE_INLINE Real Follows(const Real& before, const Twist<Real>& a, const Twist<Real>& b,
@@ -92,6 +102,19 @@ template <class Batch, class Real>
 FULCRUM_FORCE_INLINE auto IsPushedFast(const Batch& batch, const Real& fastest) {
     return (fastest > Real(kFastPush)) & (batch.secondsOfTeleport > Real(0.0f));
 }
+
+// Whether a joint with these errors, m and rad, is pushed fast, and by more than what a load stretches.
+template <class Real>
+FULCRUM_FORCE_INLINE auto IsPushedFar(const Real& gap, const Real& angle, const Vec3<Real>& armA,
+                                      const Vec3<Real>& armB, const JointSolveSettings& settings) {
+    constexpr float kLeast = 0.003f;  // rad, and of the lever arms
+    const Real rate(settings.pushRate), fast(kFastPush);
+    const auto isLong = gap * gap > (Dot<Real>(armA, armA) + Dot<Real>(armB, armB)) * Real(kLeast * kLeast);
+    return ((gap * rate > fast) & isLong) | ((angle * rate > fast) & (angle > Real(kLeast)));
+}
+
+// Mask of the first `count` lanes, which have joints.
+inline uint32_t LanesInUse(int count) { return (1u << count) - 1u; }
 
 // For these lanes, adds the change of velocity due to the rotation of a substep at once instead of in the next substep.
 template <int N>

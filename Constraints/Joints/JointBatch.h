@@ -119,6 +119,7 @@ struct JointBatch {
     uint32_t kinematicA, kinematicB;  // bit i: but it moves
     uint32_t inTree;                  // bit i: the direct solver solves the locks of lane i, see JointTree.h
     uint32_t strained;                // bit i: at the start of the step, see JointStrain.h
+    uint32_t pushed;                  // bit i: faster than kFastPush at the start of the step, see EnergyLimit.h
     LinearLock linear;
     AngularLock angular;
     uint32_t rowCount;                   // maximum over the lanes
@@ -200,7 +201,8 @@ struct JointSolveSettings {
 struct JointFindings {
     float linearError = 0, angularError = 0;  // m, rad: largest joint errors
     uint32_t linearJoint = ~0u, angularJoint = ~0u;
-    bool far = false;  // some joints are far apart, see PullJoints
+    bool far = false;     // some joints are far apart, see PullJoints
+    bool pushed = false;  // some joints are pushed fast, see EnergyLimit.h
 };
 
 // Fills the batch; its lanes, fixed and kinematic bits, locks and rowRoom must be set.

@@ -263,9 +263,14 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     // directions, would leave energy.
     const auto isDistant = distance > farFraction, isMuch = Max(distance, angle) > farFraction;
     const Real near = SecondsNear(wasPulled, isDistant, settings);
-    const auto isFar =
-        ((distance > least) | ((angle > least) & ((wasPulled >= Real(kWasFar)) | (batch.secondsOfTeleport > zero)))) &
-        (near <= Real(LongestNear(settings)));
+    batch.pushed =
+        IsPushedFar<Real>(distance / rate, angle / rate, batch.startArmA, batch.startArmB, settings).ToBits() &
+        LanesInUse(batch.count);
+    const auto mayPull =
+        MayPull<Real>(distance / rate, batch.startArmA, batch.startArmB, wasPulled, batch.secondsOfTeleport);
+    const auto isFar = (((distance > least) & mayPull) |
+                        ((angle > least) & ((wasPulled >= Real(kWasFar)) | (batch.secondsOfTeleport > zero)))) &
+                       (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
     batch.isFar = Select(isFar, Real(kWasFar) + near, zero);
     batch.isDistant = Select(isDistant, Real(1.0f), zero);
@@ -399,6 +404,7 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         FillRows<linear, angular>(batch, records, types, bodies, settings);
         FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], settings);
         findings.far |= batch.far;
+        findings.pushed |= batch.pushed != 0;
         FindStrained<linear, angular>(batch, errors);
         Soften<linear, angular>(batch, errors, settings);
     });

@@ -129,8 +129,13 @@ FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
     const Real most(settings.maxPushSpeed), rate(settings.pushRate);
     const Real error = Max(Max(Abs(offset.x()), Abs(offset.y())), Abs(offset.z())) * (rate / most);
     const auto isDistant = error > Real(FarPush(settings));
+    batch.pushed =
+        IsPushedFar<Real>(error * (most / rate), Real(0.0f), batch.startArmA, batch.startArmB, settings).ToBits() &
+        LanesInUse(batch.count);
     const Real near = SecondsNear(wasPulled, isDistant, settings);
-    const auto isFar = (error > FarPush<Real>(wasPulled, settings)) & (near <= Real(LongestNear(settings)));
+    const auto mayPull =
+        MayPull<Real>(error * (most / rate), batch.startArmA, batch.startArmB, wasPulled, batch.secondsOfTeleport);
+    const auto isFar = (error > FarPush<Real>(wasPulled, settings)) & mayPull & (near <= Real(LongestNear(settings)));
     batch.far = isFar.Any();
     batch.isFar = Select(isFar, Real(kWasFar) + near, Real(0.0f));
     batch.isDistant = Select(isDistant, Real(1.0f), Real(0.0f));
@@ -316,6 +321,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstS
         WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
     FindFar(batch, place.offset, impulses[JointRecord::kWasPulled], settings);
     findings.far |= batch.far;
+    findings.pushed |= batch.pushed != 0;
     MoveArmsToImpulsePoint(batch, place);
     batch.armA = place.armA;
     batch.armB = place.armB;

@@ -10,6 +10,7 @@
 // Rows of contacts are constant within a step; joints add the change due to the rotation of their parts.
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/EnergyLimit.h>
 #include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
 #include <Fulcrum/Physics/Stages/LocalIterations.h>
@@ -19,6 +20,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 
 namespace fulcrum {
 
@@ -36,6 +38,7 @@ enum class Verb : uint8_t {
     IterateVelocities,
     IterateRelax,
     LimitDepths,
+    LimitEnergy,  // serial, of islands with joints that are pushed fast (EnergyLimit.h)
     ClearPulls,
     FirstPull,
     Pull,
@@ -106,11 +109,17 @@ public:
         });
     }
 
+    // Also limits the energy of islands with joints that are pushed fast.
+    void LimitEnergyWith(std::span<uint32_t> parents, std::span<uint32_t> islandOf, std::span<IslandEnergy> islands) {
+        energyLimit_.emplace(bodies_, moved_.joints, moved_.pairs, layout_, group_, parents, islandOf, islands);
+    }
+
     // A group of small islands: one worker, from beginning to end.
     void RunAlone(std::span<const Verb> verbs, WorkerFindings& findings) {
         uint8_t substep = 0;
         for (const Verb verb : verbs) {
             if (IsOverBodies(verb)) {
+                if (verb == Verb::IntegratePoses && energyLimit_) energyLimit_->NoteFree();
                 RunBodies(verb, substep,
                           std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin),
                           findings);
@@ -121,6 +130,10 @@ public:
                 continue;
             }
             if (IsSkipped(verb, substep)) continue;
+            if (verb == Verb::LimitEnergy) {
+                energyLimit_->Apply();
+                continue;
+            }
             if (IsSerial(verb)) {
                 RunIterated(verb, substep);
                 continue;
@@ -209,6 +222,7 @@ private:
             case Verb::IterateVelocities:
             case Verb::IterateRelax:
             case Verb::LimitDepths:
+            case Verb::LimitEnergy:
             case Verb::NoteImpulses:
             case Verb::ClearPulls:
             case Verb::FirstPull:
@@ -312,6 +326,7 @@ private:
             case Verb::IterateVelocities:
             case Verb::IterateRelax:
             case Verb::LimitDepths:
+            case Verb::LimitEnergy:
             case Verb::ClearPulls:
             case Verb::IntegratePoses:
             case Verb::NextSubstep: break;
@@ -338,6 +353,7 @@ private:
             case Verb::IterateVelocities:
             case Verb::IterateRelax:
             case Verb::LimitDepths:
+            case Verb::LimitEnergy:
             case Verb::NoteImpulses:
             case Verb::ClearPulls:
             case Verb::StopPulls:
@@ -399,6 +415,7 @@ private:
     float h_;                            // s, of a substep
     std::atomic<int> lastOutdated_ = 0;  // the substep, from 1, after which some contact was outdated last
     LocalIterations local_;
+    std::optional<EnergyLimit> energyLimit_;  // if the group's loop has LimitEnergy
 };
 
 // Iterations over the pseudo-velocities per substep, for groups with joints that are far apart.
@@ -406,8 +423,16 @@ constexpr int kPullIterations = 4;
 // Additional iterations over contacts only, so that non-penetration wins.
 constexpr int kStopIterations = 2;
 
-// The solver loop as the sequence of its verbs. pulls: some joints are far apart. notes: for contact events.
-std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, bool notes, ScratchArena& scratch) {
+// Verbs that a group needs because of some of its joints.
+struct JointVerbs {
+    bool pulls = false;         // some are far apart
+    bool limitsEnergy = false;  // some are pushed fast
+    bool IsAny() const { return pulls || limitsEnergy; }
+};
+
+// The solver loop as the sequence of its verbs. notes: for contact events.
+std::span<const Verb> LoopOf(const SolverSettings& settings, const JointVerbs& joints, bool notes,
+                             ScratchArena& scratch) {
     const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
                                                kPullIterations + kStopIterations + 16);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
@@ -421,7 +446,7 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, bool no
         for (int i = 0; i < settings.velocityIterations; ++i)
             verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
         verbs[n++] = Verb::IterateVelocities;
-        if (pulls) {
+        if (joints.pulls) {
             verbs[n++] = Verb::ClearPulls;
             for (int i = 0; i < kPullIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstPull : Verb::Pull;
             for (int i = 0; i < kStopIterations; ++i) verbs[n++] = Verb::StopPulls;
@@ -435,6 +460,7 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, bool pulls, bool no
         if (corrects || settings.positionIterations == 0) verbs[n++] = Verb::Separations;
         else verbs[n++] = Verb::IterateRelax;
         verbs[n++] = Verb::LimitDepths;
+        if (joints.limitsEnergy) verbs[n++] = Verb::LimitEnergy;
         if (notes) verbs[n++] = Verb::NoteImpulses;
     }
     return verbs.first(n);
@@ -476,27 +502,39 @@ bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
     return far;
 }
 
-// Runs the verbs returned by loopOf(effort, whether joints are pulled) for every group. far: some joints are far apart
-// and are pulled.
+// Runs the verbs returned by loopOf(effort, JointVerbs) for every group. Of the step: some joints are far apart and are
+// pulled, and some are pushed fast.
 template <class LoopOfEffort>
-void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, bool far,
+void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, const JointVerbs& ofStep,
               std::span<PushNote> pushes, const StepWorkers& workers, LoopOfEffort&& loopOf) {
     const StepContext& step = stores.step;
     const std::span<const SolverGroup> groups = layout.groups;
-    const std::span<BodyState> pseudo = workers.scratch.Allocate<BodyState>(far ? moved.store.states.size() : 0);
+    ScratchArena& scratch = workers.scratch;
+    const size_t bodies = moved.store.states.size();
+    const std::span<BodyState> pseudo = scratch.Allocate<BodyState>(ofStep.pulls ? bodies : 0);
     std::ranges::fill(pseudo, BodyState{});
-    // Per group: its loop, and whether joints of it are pulled.
-    std::span<bool> pulls = workers.scratch.Allocate<bool>(groups.size());
-    for (size_t g = 0; g < groups.size(); ++g) pulls[g] = far && PullsJoints(layout, groups[g]);
-    const auto pseudoOf = [&](size_t g) { return pulls[g] ? pseudo.data() : nullptr; };
-    const std::span<const Verb> usual = loopOf(EffortOf(step, groups.front()), false);
-    std::span<std::span<const Verb>> loops = workers.scratch.Allocate<std::span<const Verb>>(groups.size());
+    std::span<JointVerbs> verbsOf = scratch.Allocate<JointVerbs>(groups.size());
+    bool limitsAny = false;
+    for (size_t g = 0; g < groups.size(); ++g) {
+        verbsOf[g] = {ofStep.pulls && PullsJoints(layout, groups[g]),
+                      ofStep.limitsEnergy && PushesJoints(layout, groups[g])};
+        limitsAny |= verbsOf[g].limitsEnergy;
+    }
+    const std::span<uint32_t> parents = scratch.Allocate<uint32_t>(limitsAny ? bodies : 0),
+                              islandOf = scratch.Allocate<uint32_t>(limitsAny ? bodies : 0);
+    std::span<std::span<IslandEnergy>> islands = scratch.Allocate<std::span<IslandEnergy>>(groups.size());
     for (size_t g = 0; g < groups.size(); ++g)
-        loops[g] = groups[g].IsOwn() || pulls[g] ? loopOf(EffortOf(step, groups[g]), pulls[g]) : usual;
-    const LocalMemory local(moved.store, layout, workers.scratch);
+        islands[g] =
+            scratch.Allocate<IslandEnergy>(verbsOf[g].limitsEnergy ? groups[g].bodiesEnd - groups[g].bodiesBegin : 0);
+    const auto pseudoOf = [&](size_t g) { return verbsOf[g].pulls ? pseudo.data() : nullptr; };
+    const std::span<const Verb> usual = loopOf(EffortOf(step, groups.front()), JointVerbs{});
+    std::span<std::span<const Verb>> loops = scratch.Allocate<std::span<const Verb>>(groups.size());
+    for (size_t g = 0; g < groups.size(); ++g)
+        loops[g] = groups[g].IsOwn() || verbsOf[g].IsAny() ? loopOf(EffortOf(step, groups[g]), verbsOf[g]) : usual;
+    const LocalMemory local(moved.store, layout, scratch);
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!groups[g].isLarge) continue;
-        const std::span<const Phase> phases = PhasesOf(loops[g], layout, groups[g], workers.scratch);
+        const std::span<const Phase> phases = PhasesOf(loops[g], layout, groups[g], scratch);
         if (phases.empty()) continue;
         const Effort effort = EffortOf(step, groups[g]);
         StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local).RunTogether(phases, workers);
@@ -505,8 +543,9 @@ void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayou
         for (uint32_t g = range.begin; g < range.end; ++g) {
             if (groups[g].isLarge) continue;
             const Effort effort = EffortOf(step, groups[g]);
-            StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local)
-                .RunAlone(loops[g], workers.findings[range.worker]);
+            StepSolver solver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local);
+            if (verbsOf[g].limitsEnergy) solver.LimitEnergyWith(parents, islandOf, islands[g]);
+            solver.RunAlone(loops[g], workers.findings[range.worker]);
         }
     });
 }
@@ -517,11 +556,14 @@ void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& p
            const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, std::span<PushNote> pushes,
            const StepWorkers& workers) {
     if (coloring.Size() == 0) return;
-    const bool far =
-        std::ranges::any_of(workers.findings, [](const WorkerFindings& findings) { return findings.joints.far; });
+    JointVerbs ofStep;
+    for (const WorkerFindings& findings : workers.findings) {
+        ofStep.pulls |= findings.joints.far;
+        ofStep.limitsEnergy |= findings.joints.pushed;
+    }
     RunVerbs({step, bodies, colliders, joints, coloring, pairs}, {step.settings, colliders, pairs, joints, bodies},
-             layout, far, pushes, workers, [&](const Effort& effort, bool pulls) {
-                 return LoopOf(effort.solver, pulls, !layout.notes.empty(), workers.scratch);
+             layout, ofStep, pushes, workers, [&](const Effort& effort, const JointVerbs& verbs) {
+                 return LoopOf(effort.solver, verbs, !layout.notes.empty(), workers.scratch);
              });
     if (pushes.empty()) return;
     for (const SolverGroup& group : layout.groups)

@@ -14,10 +14,10 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x6d376592e74fffd2ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x930e2d08215a3717ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x8a2412efce4a6c1aull;
+constexpr uint64_t kGoldenHashOfJoints = 0x372fbb502c40c28dull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x5783ad56a3669d1ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x8b6f488df4412502ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x19149cfb5cb3d767ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0xcfa25111c0f3e0f1ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

@@ -70,24 +70,26 @@ double LargestGain(Kind kind, int bodies, int substeps, uint32_t seed) {
     return gain;
 }
 
-// most: J/kg, of two bodies. Before, 21 and 10 of 200 gained more than 1 J/kg with hinges, 34 and 18 with ball joints,
-// the worst 8896.
-void HardlyGainEnergy(Kind kind, double most, int mostAboveOne) {
-    for (const int substeps : {4, 16}) {
-        double worst = 0;
-        int above = 0;
-        for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(200)); ++seed) {
-            const double gain = LargestGain(kind, 2, substeps, seed);
-            worst = std::max(worst, gain);
-            above += gain > 1;
+// Bodies that are at the limits of two joints at once depend so much on each other that iterations leave part of the
+// pushes that hold the joints together. With that part, and pulled about by gaps that their load opens, 2 of 100 pairs
+// on ball joints gained 27 J/kg at 4 substeps and 2 of 100 gained 21 at 16.
+void HardlyGainEnergy(Kind kind) {
+    for (const int bodies : {2, 5})
+        for (const int substeps : {4, 16}) {
+            double worst = 0;  // J/kg
+            int above = 0;
+            for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(bodies == 2 ? 200 : 50)); ++seed) {
+                const double gain = LargestGain(kind, bodies, substeps, seed);
+                worst = std::max(worst, gain);
+                above += gain > 1;
+            }
+            EXPECT_LT(worst, 10) << bodies << " bodies, " << substeps << " substeps";
+            EXPECT_LE(above, 4) << bodies << " bodies, " << substeps << " substeps";
         }
-        EXPECT_LT(worst, most) << substeps << " substeps";
-        EXPECT_LE(above, mostAboveOne) << substeps << " substeps";
-    }
 }
 
-TEST(HangingMechanisms, HingesAtTheirLimitsHardlyGainEnergy) { HardlyGainEnergy(Kind::Hinge, 20, 4); }
-TEST(HangingMechanisms, BallJointsAtTheirLimitsHardlyGainEnergy) { HardlyGainEnergy(Kind::Ball, 100, 8); }
+TEST(HangingMechanisms, HingesAtTheirLimitsHardlyGainEnergy) { HardlyGainEnergy(Kind::Hinge); }
+TEST(HangingMechanisms, BallJointsAtTheirLimitsHardlyGainEnergy) { HardlyGainEnergy(Kind::Ball); }
 
 // A body that hangs from one joint, and falls over, slides along the edge of its limits or flips past 180 degrees. With
 // 64 substeps 25 of 60 gained up to 34 kJ/kg with a limit of twist, 5 up to 40 kJ/kg with one of the swing.

@@ -1,0 +1,85 @@
+// Keeps joints that are pushed together from adding kinetic energy. Joints, contacts and limits are passive: an exact
+// solution leaves no more kinetic energy than the bodies would have without them, plus the work of motors and springs.
+// A push of the velocity iterations that relax iterations do not remove is more, and in a mechanism whose joints and
+// limits depend strongly on each other may grow from step to step. So in islands with such a push the velocities at the
+// end of each substep are scaled down to what is allowed. Used by Solve for groups of small islands; in large ones what
+// others lose in the same substep would hide it. One thread per group.
+#pragma once
+
+#include <Fulcrum/Physics/Stages/SolverLayout.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/JointStore.h>
+#include <Fulcrum/Physics/World/PairStore.h>
+
+#include <span>
+
+namespace fulcrum {
+
+// Whether some joint of the group is pushed fast at the start of the step.
+bool PushesJoints(const SolverLayout& layout, const SolverGroup& group);
+
+// Sums over the bodies of an island, about an origin.
+struct IslandMotion {
+    double mass = 0;                       // kg
+    double energy = 0;                     // J
+    Position moment = Position::Zero();    // kg m
+    Position momentum = Position::Zero();  // kg m/s
+    Position angular = Position::Zero();   // kg m2/s
+    Sym3<double> inertia;                  // kg m2
+};
+
+// A motion as a rigid body.
+struct RigidMotion {
+    Position center = Position::Zero();   // m, of mass, relative to the origin
+    Position linear = Position::Zero();   // m/s
+    Position angular = Position::Zero();  // rad/s
+    double energy = 0;                    // J
+};
+
+struct IslandEnergy {
+    uint32_t lowest = 0;  // body of it; its center is the origin of sums
+    bool isPushed = false;
+    bool isDriven = false;      // by a kinematic body, a surface velocity or masses that differ by constraint
+    bool isHeld = false;        // by something that does not move
+    IslandMotion free, solved;  // without and with the constraints of the substep
+    double work = 0;            // J, by motors and springs
+    // Of velocities relative to `rigid`.
+    float scale = 1;
+    RigidMotion rigid;
+};
+
+class EnergyLimit {
+public:
+    // parents, islandOf: by body of the world; islands: as many as the group has bodies. All uninitialized.
+    EnergyLimit(BodyStore& bodies, const JointStore& joints, const PairStore& pairs, const SolverLayout& layout,
+                const SolverGroup& group, std::span<uint32_t> parents, std::span<uint32_t> islandOf,
+                std::span<IslandEnergy> islands);
+
+    // In each substep: before the poses are integrated, and at its end. A gyroscopic torque adds no energy, but that of
+    // a push would.
+    void NoteFree();
+    void Apply();
+
+private:
+    struct Velocity {
+        Vector3 linear, angular;
+    };
+    Velocity FreeOf(uint32_t body) const {
+        const float* row = bodies_.unconstrained[body].row;
+        return {{row[0], row[1], row[2]}, {row[3], row[4], row[5]}};
+    }
+    Velocity SolvedOf(uint32_t body) const { return {bodies_.LinearVelocityOf(body), bodies_.AngularVelocityOf(body)}; }
+    static bool IsLimited(const IslandEnergy& island) { return island.isPushed && !island.isDriven; }
+    template <class VelocityOf>
+    void Sum(IslandMotion IslandEnergy::*motion, VelocityOf&& velocityOf);
+    IslandEnergy& IslandOf(uint32_t body) const { return islands_[islandOf_[body]]; }
+    Position PlaceOf(uint32_t body) const;
+
+    BodyStore& bodies_;
+    const SolverLayout& layout_;
+    const SolverGroup& group_;
+    std::span<const uint32_t> islandOf_;  // by body: in `islands_`
+    std::span<IslandEnergy> islands_;
+};
+
+}  // namespace fulcrum
