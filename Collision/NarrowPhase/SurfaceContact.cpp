@@ -59,7 +59,7 @@ public:
     }
 
     void Run() {
-        contacts_.filter_.Begin(settings_.speculativeDistance > ContactTolerances::kFarAhead * a_.OuterRadius());
+        contacts_.filter_.Begin(settings_.speculativeDistance > ContactTolerances::kFarAhead * a_.InnerRadius());
         contacts_.counters_ = {};
         Collect();
         const SurfaceProbe probe{a_,      isPolyhedral_ ? &core_ : nullptr, axes_,

@@ -15,33 +15,10 @@ constexpr double kTolerance = 1.1;
 // leave to converge from substep to substep.
 constexpr double kLeastEnergy = 0.005;
 
-std::span<const uint32_t> BodiesOf(const SolverLayout& layout, const SolverGroup& group) {
-    return std::span(layout.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin);
-}
-
-// Calls visit(batch) for all batches of a group, which is not the one with the constraints without a color.
-template <class Visit>
-void VisitBatches(const SolverLayout& layout, const SolverGroup& group, Visit&& visit) {
-    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
-        ForEachBatchList(layout, [&](const auto& list, BatchKind kind) {
-            const BatchRange& range = layout.colors[c].of[kind];
-            for (uint32_t i = range.begin; i < range.end; ++i) visit(list.batches[i]);
-        });
-}
-
 template <class Batch>
 concept JointsInLanes = requires(const Batch& batch) {
     batch.pushed;
 };
-
-template <int N>
-uint32_t SecondBody(const ContactBatch<N, true>& batch, int lane) {
-    return batch.bodyA[lane];
-}
-template <class Batch>
-uint32_t SecondBody(const Batch& batch, int lane) {
-    return batch.bodyB[lane];
-}
 
 // Rate of change of a row, J v, in m/s or rad/s. A side that is not dynamic counts as at rest.
 template <class Vector>
@@ -74,23 +51,12 @@ Sym3<double> operator+(Sym3<double> a, const Sym3<double>& b) {
 }
 
 // The solution of a x = b, by cofactors; zero if the matrix is singular.
-Position Solve(const Sym3<double>& a, const Position& b) {
+Position SolveFor(const Sym3<double>& a, const Position& b) {
     Sym3<double> c;
     c.xx = a.yy * a.zz - a.yz * a.yz, c.xy = a.xz * a.yz - a.xy * a.zz, c.xz = a.xy * a.yz - a.xz * a.yy;
     c.yy = a.xx * a.zz - a.xz * a.xz, c.yz = a.xy * a.xz - a.xx * a.yz, c.zz = a.xx * a.yy - a.xy * a.xy;
     const double determinant = a.xx * c.xx + a.xy * c.xy + a.xz * c.xz;
     return determinant > 0 ? Position(c * b / determinant) : Position(Position::Zero());
-}
-
-// The motion as a rigid body with the same momentum and angular momentum.
-RigidMotion RigidMotionOf(const IslandMotion& motion) {
-    RigidMotion rigid;
-    rigid.center = motion.moment / motion.mass;
-    rigid.linear = motion.momentum / motion.mass;
-    const Position angular = motion.angular - Cross<double>(rigid.center, motion.momentum);
-    rigid.angular = Solve(motion.inertia + InertiaOf(-motion.mass, rigid.center), angular);
-    rigid.energy = 0.5 * (Dot<double>(rigid.linear, motion.momentum) + Dot<double>(rigid.angular, angular));
-    return rigid;
 }
 
 }  // namespace
@@ -107,8 +73,8 @@ bool PushesJoints(const SolverLayout& layout, const SolverGroup& group) {
 EnergyLimit::EnergyLimit(BodyStore& bodies, const JointStore& joints, const PairStore& pairs,
                          const SolverLayout& layout, const SolverGroup& group, std::span<uint32_t> parents,
                          std::span<uint32_t> islandOf, std::span<IslandEnergy> islands)
-    : bodies_(bodies), layout_(layout), group_(group), islandOf_(islandOf) {
-    const std::span<const uint32_t> members = BodiesOf(layout, group);
+    : bodies_(bodies), joints_(joints), layout_(layout), group_(group), islandOf_(islandOf) {
+    const std::span<const uint32_t> members = Bodies();
     UnionFind sets(parents, members);
     VisitBatches(layout, group, [&]<class Batch>(const Batch& batch) {
         for (int lane = 0; lane < batch.count; ++lane) {
@@ -126,6 +92,8 @@ EnergyLimit::EnergyLimit(BodyStore& bodies, const JointStore& joints, const Pair
     islands_ = islands.first(count);
     for (const uint32_t body : members) {
         islandOf[body] = islandOf[sets.Find(body)];
+        const float inverse = bodies.dynamics[body].inverseMass;
+        if (inverse > 0) IslandOf(body).mass += 1.0 / double{inverse};
         if (bodies.dynamics[body].lockedAxes != LockedAxes::None) IslandOf(body).isHeld = true;
     }
     VisitBatches(layout, group, [&]<class Batch>(const Batch& batch) {
@@ -157,7 +125,16 @@ EnergyLimit::EnergyLimit(BodyStore& bodies, const JointStore& joints, const Pair
     });
 }
 
-// m, of the center of mass, relative to the lowest body of the island.
+// That at which the solver has its inertia: bodies without joints keep that of the start of the step.
+Quaternion EnergyLimit::RotationOf(uint32_t body) const {
+    const Quaternion start = bodies_.RotationOf(body);
+    if (!bodies_.dynamics[body].HasGyroscopicTorque() || !joints_.HasAny(body)) return start;
+    const float* turn = bodies_.states[body].deltaRotation;
+    const float* half = bodies_.states[body].halfTurn;
+    return Quaternion{turn[0] * half[0], turn[1] * half[0], turn[2] * half[0], half[1]} * start;
+}
+
+// m, of the center of mass, relative to that of the lowest body of the island.
 Position EnergyLimit::PlaceOf(uint32_t body) const {
     const uint32_t origin = IslandOf(body).lowest;
     Position place = bodies_.CenterOf(body) - bodies_.CenterOf(origin);
@@ -166,52 +143,31 @@ Position EnergyLimit::PlaceOf(uint32_t body) const {
     return place;
 }
 
-template <class VelocityOf>
-void EnergyLimit::Sum(IslandMotion IslandEnergy::*motion, VelocityOf&& velocityOf) {
-    for (IslandEnergy& island : islands_) island.*motion = {};
-    for (const uint32_t body : BodiesOf(layout_, group_)) {
-        const BodyDynamics& d = bodies_.dynamics[body];
-        IslandEnergy& island = IslandOf(body);
-        if (!IsLimited(island) || !(d.inverseMass > 0)) continue;
-        const float* turn = bodies_.states[body].deltaRotation;
-        Quaternion rotation = bodies_.RotationOf(body);
-        if (d.HasGyroscopicTorque()) rotation = RotationFromVector(Vector3(turn[0], turn[1], turn[2])) * rotation;
-        const Velocity velocity = velocityOf(body);
-        const Position v = velocity.linear.template cast<double>();
-        const double mass = 1.0 / double{d.inverseMass};
-        IslandMotion& sum = island.*motion;
-        sum.mass += mass;
-        sum.energy += 0.5 * mass * Dot<double>(v, v) + RotationalEnergy(d, rotation, velocity.angular);
-        if (!island.isHeld) {
-            const Position p = v * mass, at = PlaceOf(body);
-            sum.moment += at * mass;
-            sum.momentum += p;
-            sum.angular +=
-                Cross<double>(at, p) + AngularMomentum(d, rotation, velocity.angular).template cast<double>();
-            sum.inertia = sum.inertia + InertiaOf(d, rotation) + InertiaOf(mass, at);
-        }
-    }
+// J, kinetic.
+double EnergyLimit::EnergyOf(uint32_t body, const Velocity& velocity) const {
+    const BodyDynamics& d = bodies_.dynamics[body];
+    if (!(d.inverseMass > 0)) return 0;
+    const Position v = velocity.linear.cast<double>();
+    const Vector3 alongAxes = InverseRotate(RotationOf(body) * d.PrincipalAxes(), velocity.angular);
+    return 0.5 * (Dot<double>(v, v) / double{d.inverseMass} + TwiceRotationalEnergy<double>(d, alongAxes));
 }
 
 void EnergyLimit::NoteFree() {
-    Sum(&IslandEnergy::free, [&](uint32_t body) { return FreeOf(body); });
+    for (IslandEnergy& island : islands_) island.free = 0;
+    for (const uint32_t body : Bodies())
+        if (IslandEnergy& island = IslandOf(body); IsLimited(island)) island.free += EnergyOf(body, FreeOf(body));
 }
 
-void EnergyLimit::Apply() {
-    const std::span<const uint32_t> members = BodiesOf(layout_, group_);
-    Sum(&IslandEnergy::solved, [&](uint32_t body) { return SolvedOf(body); });
-    for (IslandEnergy& island : islands_) {
-        island.work = 0;
-        island.scale = 1;
-    }
-    // An impulse does the work of its mean velocity: from without to with all impulses of the substep.
+// The work of motors and springs. An impulse does the work of its mean velocity: from without to with all impulses of
+// the substep.
+void EnergyLimit::AddWork() {
     VisitBatches(layout_, group_, [&]<class Batch>(const Batch& batch) {
         if constexpr (requires { batch.rows[0].mostPush; }) {
             for (int lane = 0; lane < batch.count; ++lane) {
                 const uint32_t a = batch.bodyA[lane], b = batch.bodyB[lane];
                 const bool movesA = bodies_.CanMove(a), movesB = bodies_.CanMove(b);
                 IslandEnergy& island = IslandOf(movesA ? a : b);
-                if (!IsLimited(island)) continue;
+                if (!island.exceeds) continue;
                 double work = 0;
                 for (uint32_t i = 0; i < batch.rowCount; ++i) {
                     const auto& row = batch.rows[i];
@@ -230,16 +186,55 @@ void EnergyLimit::Apply() {
             }
         }
     });
+}
+
+void EnergyLimit::FindRigidMotion(IslandEnergy& island) const {
+    island.rigid = {};
+    if (island.isHeld) return;
+    // Sums about the center of the lowest body: kg m, kg m/s, kg m2/s, kg m2.
+    Position moment = Position::Zero(), momentum = Position::Zero(), angular = Position::Zero();
+    Sym3<double> inertia;
+    for (const uint32_t body : Bodies()) {
+        const BodyDynamics& d = bodies_.dynamics[body];
+        if (&IslandOf(body) != &island || !(d.inverseMass > 0)) continue;
+        const double mass = 1.0 / double{d.inverseMass};
+        const Quaternion rotation = RotationOf(body);
+        const Velocity velocity = SolvedOf(body);
+        const Position p = velocity.linear.cast<double>() * mass, at = PlaceOf(body);
+        moment += at * mass;
+        momentum += p;
+        angular += Cross<double>(at, p) + AngularMomentum(d, rotation, velocity.angular).cast<double>();
+        inertia = inertia + InertiaOf(d, rotation) + InertiaOf(mass, at);
+    }
+    RigidMotion& rigid = island.rigid;
+    rigid.center = moment / island.mass;
+    rigid.linear = momentum / island.mass;
+    angular -= Cross<double>(rigid.center, momentum);
+    rigid.angular = SolveFor(inertia + InertiaOf(-island.mass, rigid.center), angular);
+    rigid.energy = 0.5 * (Dot<double>(rigid.linear, momentum) + Dot<double>(rigid.angular, angular));
+}
+
+void EnergyLimit::Apply() {
     for (IslandEnergy& island : islands_) {
-        if (!IsLimited(island) || !(island.solved.mass > 0)) continue;
-        const RigidMotion free = island.isHeld ? RigidMotion{} : RigidMotionOf(island.free);
-        island.rigid = island.isHeld ? RigidMotion{} : RigidMotionOf(island.solved);
-        const double allowed = std::max(island.free.energy - free.energy, 0.0) + island.work,
-                     energy = island.solved.energy - island.rigid.energy;
-        if (energy > kTolerance * allowed && energy > kLeastEnergy * island.solved.mass)
+        island.solved = island.work = 0;
+        island.scale = 1;
+    }
+    for (const uint32_t body : Bodies())
+        if (IslandEnergy& island = IslandOf(body); IsLimited(island)) island.solved += EnergyOf(body, SolvedOf(body));
+    bool anyExceeds = false;
+    for (IslandEnergy& island : islands_)
+        anyExceeds |= island.exceeds = IsLimited(island) && island.solved > island.free;
+    if (!anyExceeds) return;
+    AddWork();
+    for (IslandEnergy& island : islands_) {
+        if (!island.exceeds) continue;
+        FindRigidMotion(island);
+        const double allowed = std::max(island.free - island.rigid.energy, 0.0) + island.work,
+                     energy = island.solved - island.rigid.energy;
+        if (energy > kTolerance * allowed && energy > kLeastEnergy * island.mass)
             island.scale = static_cast<float>(std::sqrt(allowed / energy));
     }
-    for (const uint32_t body : members) {
+    for (const uint32_t body : Bodies()) {
         const IslandEnergy& island = IslandOf(body);
         if (island.scale >= 1) continue;
         const RigidMotion& rigid = island.rigid;

@@ -18,34 +18,25 @@ namespace fulcrum {
 // Whether some joint of the group is pushed fast at the start of the step.
 bool PushesJoints(const SolverLayout& layout, const SolverGroup& group);
 
-// Sums over the bodies of an island, about an origin.
-struct IslandMotion {
-    double mass = 0;                       // kg
-    double energy = 0;                     // J
-    Position moment = Position::Zero();    // kg m
-    Position momentum = Position::Zero();  // kg m/s
-    Position angular = Position::Zero();   // kg m2/s
-    Sym3<double> inertia;                  // kg m2
-};
-
-// A motion as a rigid body.
+// The motion of an island as a rigid body with its momentum and angular momentum.
 struct RigidMotion {
-    Position center = Position::Zero();   // m, of mass, relative to the origin
+    Position center = Position::Zero();   // m, of mass, relative to the lowest body's
     Position linear = Position::Zero();   // m/s
     Position angular = Position::Zero();  // rad/s
     double energy = 0;                    // J
 };
 
 struct IslandEnergy {
-    uint32_t lowest = 0;  // body of it; its center is the origin of sums
+    uint32_t lowest = 0;  // body of it
     bool isPushed = false;
-    bool isDriven = false;      // by a kinematic body, a surface velocity or masses that differ by constraint
-    bool isHeld = false;        // by something that does not move
-    IslandMotion free, solved;  // without and with the constraints of the substep
-    double work = 0;            // J, by motors and springs
-    // Of velocities relative to `rigid`.
-    float scale = 1;
-    RigidMotion rigid;
+    bool isDriven = false;        // by a kinematic body, a surface velocity or masses that differ by constraint
+    bool isHeld = false;          // by something that does not move
+    double mass = 0;              // kg
+    double free = 0, solved = 0;  // J, kinetic, without and with the constraints of the substep
+    bool exceeds = false;         // free < solved
+    double work = 0;              // J, by motors and springs
+    RigidMotion rigid;            // zero if it is held
+    float scale = 1;              // of velocities relative to `rigid`
 };
 
 class EnergyLimit {
@@ -70,12 +61,18 @@ private:
     }
     Velocity SolvedOf(uint32_t body) const { return {bodies_.LinearVelocityOf(body), bodies_.AngularVelocityOf(body)}; }
     static bool IsLimited(const IslandEnergy& island) { return island.isPushed && !island.isDriven; }
-    template <class VelocityOf>
-    void Sum(IslandMotion IslandEnergy::*motion, VelocityOf&& velocityOf);
+    std::span<const uint32_t> Bodies() const {
+        return std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
+    }
     IslandEnergy& IslandOf(uint32_t body) const { return islands_[islandOf_[body]]; }
+    Quaternion RotationOf(uint32_t body) const;
     Position PlaceOf(uint32_t body) const;
+    double EnergyOf(uint32_t body, const Velocity& velocity) const;
+    void AddWork();
+    void FindRigidMotion(IslandEnergy& island) const;
 
     BodyStore& bodies_;
+    const JointStore& joints_;
     const SolverLayout& layout_;
     const SolverGroup& group_;
     std::span<const uint32_t> islandOf_;  // by body: in `islands_`

@@ -30,12 +30,6 @@ constexpr uint32_t WidthOf(std::span<ContactBatch<N, kFixedB>>) {
     return N;
 }
 
-template <int N, bool kFixedB>
-uint32_t SecondBody(const ContactBatch<N, kFixedB>& batch, int lane) {
-    if constexpr (kFixedB) return batch.bodyA[lane];
-    else return batch.bodyB[lane];
-}
-
 // The index of the first true value from `begin` on; the size if there is none. Few of many are true.
 uint32_t NextTrue(std::span<const bool> values, uint32_t begin) {
     const void* found = begin < values.size() ? std::memchr(&values[begin], 1, values.size() - begin) : nullptr;

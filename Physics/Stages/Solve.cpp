@@ -486,19 +486,13 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout&
 
 // Whether some joint of the group is far apart.
 bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
-    const auto isAnyFar = [](const auto& batches) {
-        if constexpr (requires { batches[0].far; })
-            return std::ranges::any_of(batches, [](const auto& batch) { return batch.far; });
-        return false;
-    };
     bool far = false;
-    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
-        ForEachBatchList(layout, [&](const auto& list, BatchKind kind) {
-            const BatchRange& range = layout.colors[c].of[kind];
-            far = far || isAnyFar(std::span(list.batches).subspan(range.begin, range.Count()));
-        });
+    const auto note = [&](const auto& batch) {
+        if constexpr (requires { batch.far; }) far |= batch.far;
+    };
+    VisitBatches(layout, group, note);
     if (&group == &layout.groups.front())
-        ForEachOverflowList(layout, [&](const auto& batches) { far = far || isAnyFar(batches); });
+        ForEachOverflowList(layout, [&](const auto& batches) { std::ranges::for_each(batches, note); });
     return far;
 }
 

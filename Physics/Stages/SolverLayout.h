@@ -108,6 +108,26 @@ void ForEachBatchList(Layout& layout, F&& f) {
     f(layout.fixed, kFixedContacts);
 }
 
+// Calls visit(batch) for all batches of a group in the order of solving, but for those without a color.
+template <class Layout, class Visit>
+void VisitBatches(Layout& layout, const SolverGroup& group, Visit&& visit) {
+    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c)
+        ForEachBatchList(layout, [&](auto& list, BatchKind kind) {
+            const BatchRange& range = layout.colors[c].of[kind];
+            for (uint32_t i = range.begin; i < range.end; ++i) visit(list.batches[i]);
+        });
+}
+
+// The second body of a lane; the first if the second is static or kinematic and the batch does not use it.
+template <int N>
+uint32_t SecondBody(const ContactBatch<N, true>& batch, int lane) {
+    return batch.bodyA[lane];
+}
+template <class Batch>
+uint32_t SecondBody(const Batch& batch, int lane) {
+    return batch.bodyB[lane];
+}
+
 // Calls f(batches) for each kind of batches without a color, in the order of solving.
 template <class Layout, class F>
 void ForEachOverflowList(Layout& layout, F&& f) {

@@ -15,9 +15,9 @@ namespace {
 
 constexpr uint64_t kGoldenHash = 0x6d376592e74fffd2ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x372fbb502c40c28dull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x5783ad56a3669d1ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x8a2412efce4a6c1aull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x8b6f488df4412502ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0xcfa25111c0f3e0f1ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0xb4f751a9f8928e09ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
