@@ -133,6 +133,55 @@ FULCRUM_FORCE_INLINE Vec3<Real> ReachAlongLine(const Vec3<Real>& offset, const V
     return line * (along * Select(perRadius > Real(0.0f), part, Real(1.0f)));
 }
 
+// The inverse of k with x / (x + damping)^2 instead of 1 / x for each eigenvalue x, in lanes where some is smaller than
+// about the damping. inverse: of k. Locked axes leave directions in which a joint has next to no mobility. To move
+// along one its bodies would have to move many times as fast, and impulses along it grow, without effect, until the
+// direction has rotated, and they have one. Damped least squares as in C. W. Wampler, "Manipulator Inverse Kinematic
+// Solutions Based on Vector Formulations and Damped Least-Squares Methods", whose 1 / (x + damping) is multiplied by x
+// over that: where nothing can move there is no impulse.
+template <class Real>
+[[gnu::noinline, gnu::cold]] Sym3<Real> DampedInverse(const Sym3<Real>& k, const Sym3<Real>& inverse,
+                                                      const Real& damping) {
+    Sym3<Real> damped = k;
+    damped.xx += damping;
+    damped.yy += damping;
+    damped.zz += damping;
+    damped = SymmetricInverse(damped);
+    const Vec3<Real> x(damped.xx, damped.xy, damped.xz), y(damped.xy, damped.yy, damped.yz),
+        z(damped.xz, damped.yz, damped.zz);
+    const Vec3<Real> kx = k * x, ky = k * y, kz = k * z;
+    const auto isSmall = Max(Max(inverse.xx, inverse.yy), inverse.zz) * damping > Real(1.0f);
+    Sym3<Real> result;
+    result.xx = Select(isSmall, Dot<Real>(x, kx), inverse.xx);
+    result.yy = Select(isSmall, Dot<Real>(y, ky), inverse.yy);
+    result.zz = Select(isSmall, Dot<Real>(z, kz), inverse.zz);
+    result.xy = Select(isSmall, Dot<Real>(x, ky), inverse.xy);
+    result.xz = Select(isSmall, Dot<Real>(x, kz), inverse.xz);
+    result.yz = Select(isSmall, Dot<Real>(y, kz), inverse.yz);
+    return result;
+}
+template <class Real>
+[[gnu::noinline, gnu::cold]] Sym2<Real> DampedInverse(const Sym2<Real>& k, const Sym2<Real>& inverse,
+                                                      const Real& damping) {
+    Sym2<Real> damped = k;
+    damped.xx += damping;
+    damped.yy += damping;
+    damped = SymmetricInverse(damped);
+    const Vec2<Real> x(damped.xx, damped.xy), y(damped.xy, damped.yy), kx = k * x, ky = k * y;
+    const auto isSmall = Max(inverse.xx, inverse.yy) * damping > Real(1.0f);
+    Sym2<Real> result;
+    result.xx = Select(isSmall, x.x() * kx.x() + x.y() * kx.y(), inverse.xx);
+    result.yy = Select(isSmall, y.x() * ky.x() + y.y() * ky.y(), inverse.yy);
+    result.xy = Select(isSmall, x.x() * ky.x() + x.y() * ky.y(), inverse.xy);
+    return result;
+}
+
+// The damping of a matrix with this trace, if a body has locked translations. Others stay bit-identical.
+template <int N>
+FULCRUM_FORCE_INLINE Wide<N> DampingOf(const JointBatch<N>& batch, const Wide<N>& trace) {
+    return batch.guided * (trace * Wide<N>(1e-3f));
+}
+
 // Sets the parts up, hard and without bias, and returns the errors. If joints are far apart, their velocity rows are
 // set up as if the anchors coincided: lever arms as long as the gap would spin up small bodies.
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -148,6 +197,13 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         const Vec3<Real> c = Cross<Real>(place.axisB, b);
         errors.hinge = HingeError<Real>(place.axisA, b, c);
         batch.hinge.CalculateProperties(batch.massA, batch.massB, b, c);
+        if (batch.isGuided) [[unlikely]] {
+            const Sym3<Real> all = AngularInverseMass(batch.massA, batch.massB);
+            const Vec3<Real>&b2 = batch.hinge.GetB2(), c2 = batch.hinge.GetC2();
+            const Sym2<Real> k{Between(c2, all, c2), Between(b2, all, b2), -Between(c2, all, b2)};
+            batch.hinge.SetEffectiveMass(DampedInverse<Real>(k, batch.hinge.GetEffectiveMass(),
+                                                             DampingOf(batch, Real(all.xx + all.yy + all.zz))));
+        }
     }
     if constexpr (kLinear == LinearLock::Point) {
         const Real share = ImpulsePointFraction<N>(batch.fixedA, batch.fixedB);
@@ -155,6 +211,12 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         const Vec3<Real> between = batch.far ? ZeroUnless<Real>(batch.isFar <= Real(0.5f), place.offset) : place.offset;
         batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + between * share),
                                         Vec3<Real>(place.armB - between * (Real(1.0f) - share)));
+        if (kAngular == AngularLock::None && batch.isGuided) [[unlikely]] {
+            const Sym3<Real> k =
+                PointInverseMass(batch.massA, batch.massB, batch.point.GetArm1(), batch.point.GetArm2());
+            batch.point.SetEffectiveMass(
+                DampedInverse<Real>(k, batch.point.GetEffectiveMass(), DampingOf(batch, Real(k.xx + k.yy + k.zz))));
+        }
     }
     if constexpr (kLinear == LinearLock::Line) {
         const Vec3<Real> n1 = Straightened<Real>(place.lineNormal, place.line);
@@ -265,9 +327,17 @@ FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
         // Translation alone: what locks of axes leave of it.
         const Vec3<Real> masses = batch.massA.mass + batch.massB.mass;
         const Real least = Min(Min(masses.x(), masses.y()), masses.z());
-        if constexpr (kLinear == LinearLock::Point) batch.coupledPoint = SymmetricInverse(s, scale, least);
-        else
-            batch.coupledLine = SymmetricInverse(Sym2<Real>{s.xx, s.yy, s.xy}, Vec2<Real>(scale.x(), scale.y()), least);
+        if constexpr (kLinear == LinearLock::Point) {
+            batch.coupledPoint = SymmetricInverse(s, scale, least);
+            if (batch.isGuided) [[unlikely]]
+                batch.coupledPoint = DampedInverse<Real>(s, batch.coupledPoint,
+                                                         DampingOf(batch, Real(scale.x() + scale.y() + scale.z())));
+        } else {
+            const Sym2<Real> flat{s.xx, s.yy, s.xy};
+            batch.coupledLine = SymmetricInverse(flat, Vec2<Real>(scale.x(), scale.y()), least);
+            if (batch.isGuided) [[unlikely]]
+                batch.coupledLine = DampedInverse<Real>(flat, batch.coupledLine, DampingOf(batch, Real(scale.x())));
+        }
     }
 }
 

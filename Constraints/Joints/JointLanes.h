@@ -86,8 +86,13 @@ FULCRUM_FORCE_INLINE void ChangeVelocities(const Batch& batch, BodyState* states
 // The bodies' masses for these joints, mass overrides applied. Returns the mask of lanes in which an inertia rotates.
 template <int N>
 FULCRUM_FORCE_INLINE auto GatherMasses(JointBatch<N>& batch, const BodyMass* masses) {
-    const auto turns = TurningLanes<N>(GatherMass<N>(batch.bodyA, masses, batch.massA)) |
-                       TurningLanes<N>(GatherMass<N>(batch.bodyB, masses, batch.massB));
+    const Wide<N> flagsA = GatherMass<N>(batch.bodyA, masses, batch.massA),
+                  flagsB = GatherMass<N>(batch.bodyB, masses, batch.massB);
+    const auto turns = TurningLanes<N>(flagsA) | TurningLanes<N>(flagsB);
+    batch.isGuided = AnyLocked<N>(flagsA) || AnyLocked<N>(flagsB);
+    if (batch.isGuided) [[unlikely]]
+        for (int i = 0; i < N; ++i)
+            batch.guided.Set(i, std::fmax(flagsA[i], flagsB[i]) >= float{BodyMass::kLockedX} ? 1.0f : 0.0f);
     if (batch.overridesMass) {
         ScaleMass(batch.massA, batch.massScaleA, batch.inertiaScaleA);
         ScaleMass(batch.massB, batch.massScaleB, batch.inertiaScaleB);

@@ -124,6 +124,8 @@ public:
     // K^-1 without the softness; zero if inactive. kg or kg m2.
     const Symmetric& GetEffectiveMass() const { return effectiveMass_; }
 
+    void SetEffectiveMass(const Symmetric& effectiveMass) { effectiveMass_ = effectiveMass; }
+
     State SaveState() const { return {totalLambda_}; }
     void RestoreState(const State& state) { totalLambda_ = state.totalLambda; }
 

@@ -17,7 +17,7 @@ constexpr uint64_t kGoldenHash = 0x6d376592e74fffd2ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x372fbb502c40c28dull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0x8a2412efce4a6c1aull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x8b6f488df4412502ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0xb4f751a9f8928e09ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0xeb30a1b513076854ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

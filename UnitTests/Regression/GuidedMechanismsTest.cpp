@@ -3,6 +3,7 @@
 // mechanisms at rest exploded.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
+#include <Fulcrum/UnitTests/Support/GuidedScene.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <algorithm>
@@ -49,6 +50,14 @@ TEST(GuidedMechanisms, StayAtRest) {
         for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(200)); ++seed)
             // Rounding of anchors is corrected, where little mobility is left by much motion.
             EXPECT_LT(FastestOf(kind, seed), 0.05f) << static_cast<int>(kind) << ", seed " << seed;
+}
+
+// Bodies that overlap as they are created, fall on each other, and pull at joints of which locked axes leave next to no
+// mobility. Impulses in such directions grew until they had an effect: of 25 such piles 18 threw a body at more than
+// 50 m/s, 5 at the speed limit of 1000 m/s.
+TEST(GuidedMechanisms, DoNotExplodeInAPile) {
+    for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(10)); ++seed)
+        EXPECT_LT(FastestOfGuidedScene(seed), 50) << "seed " << seed;
 }
 
 }  // namespace

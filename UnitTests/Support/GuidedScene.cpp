@@ -3,16 +3,16 @@
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace fulcrum::testing {
 
 namespace {
 
 constexpr int kSteps = 90;
 
-}  // namespace
-
-uint64_t HashOfGuidedScene(uint32_t threads) {
-    TestWorld world({}, threads);
+std::vector<BodyId> AddBodies(TestWorld& world, uint32_t seed) {
     world.AddFloor({.friction = 0.5f});
     world.Add({.shape = BoxOf(3, 0.1f, 3),
                .motion = MotionType::Kinematic,
@@ -22,9 +22,8 @@ uint64_t HashOfGuidedScene(uint32_t threads) {
         SphereOf(0.35f), BoxOf(0.4f, 0.2f, 0.3f), CapsuleOf(0.3f, 0.2f),
         HullOf({{0.4f, -0.2f, 0}, {-0.3f, -0.2f, 0.3f}, {-0.3f, -0.2f, -0.3f}, {0, 0.4f, 0}}),
         CompoundOf({{.shape = BoxOf(0.4f, 0.1f, 0.1f)}, {.shape = SphereOf(0.2f), .position = {0.4f, 0, 0}}})};
-    RandomPoses random(5);
+    RandomPoses random(seed);
     std::vector<BodyId> bodies;
-    std::vector<Position> starts;
     for (int i = 0; i < 320; ++i) {
         const double y = 0.6 + 0.9 * (i / 64);
         const Position at(0.9 * (i % 8 - 3.5), y, 0.9 * (i / 8 % 8 - 3.5));
@@ -38,7 +37,6 @@ uint64_t HashOfGuidedScene(uint32_t threads) {
                           .material = {.restitution = restitution},
                           .lockedAxes = static_cast<LockedAxes>(i * 29 % 64)};
         bodies.push_back(world.Add(body));
-        starts.push_back(world.Bodies().GetCenterOfMass(bodies.back()));
     }
     for (size_t i = 0; i + 1 < bodies.size(); i += 9) {
         const BodyId a = bodies[i], b = bodies[i + 1];
@@ -48,6 +46,16 @@ uint64_t HashOfGuidedScene(uint32_t threads) {
         if (i % 2 == 0) Join(world, Of<PointJointSettings>(between));
         else Join(world, Of<HingeJointSettings>(between));
     }
+    return bodies;
+}
+
+}  // namespace
+
+uint64_t HashOfGuidedScene(uint32_t threads) {
+    TestWorld world({}, threads);
+    const std::vector<BodyId> bodies = AddBodies(world, 5);
+    std::vector<Position> starts;
+    for (const BodyId id : bodies) starts.push_back(world.Bodies().GetCenterOfMass(id));
     world.Steps(kSteps);
     for (size_t i = 0; i < bodies.size(); ++i) {
         const Position moved = world.Bodies().GetCenterOfMass(bodies[i]) - starts[i];
@@ -58,6 +66,17 @@ uint64_t HashOfGuidedScene(uint32_t threads) {
         EXPECT_LT(Length(world.Bodies().GetAngularVelocity(bodies[i])), 50) << i;
     }
     return world.System().HashState();
+}
+
+float FastestOfGuidedScene(uint32_t seed) {
+    TestWorld world;
+    const std::vector<BodyId> bodies = AddBodies(world, seed);
+    float fastest = 0;
+    for (int i = 0; i < 240; ++i) {
+        world.Step();
+        for (const BodyId id : bodies) fastest = std::max(fastest, Length(world.VelocityOf(id)));
+    }
+    return fastest;
 }
 
 }  // namespace fulcrum::testing
