@@ -72,9 +72,10 @@ bool PushesJoints(const SolverLayout& layout, const SolverGroup& group) {
 
 EnergyLimit::EnergyLimit(BodyStore& bodies, const JointStore& joints, const PairStore& pairs,
                          const SolverLayout& layout, const SolverGroup& group, std::span<uint32_t> parents,
-                         std::span<uint32_t> islandOf, std::span<IslandEnergy> islands)
-    : bodies_(bodies), joints_(joints), layout_(layout), group_(group), islandOf_(islandOf) {
-    const std::span<const uint32_t> members = Bodies();
+                         std::span<uint32_t> islandOf, std::span<uint32_t> members, std::span<IslandEnergy> islands)
+    : bodies_(bodies), joints_(joints), layout_(layout), group_(group), islandOf_(islandOf), members_(members) {
+    std::copy_n(layout.bodies.begin() + group.bodiesBegin, members.size(), members.begin());
+    std::ranges::sort(members);
     UnionFind sets(parents, members);
     VisitBatches(layout, group, [&]<class Batch>(const Batch& batch) {
         for (int lane = 0; lane < batch.count; ++lane) {
@@ -130,8 +131,7 @@ Quaternion EnergyLimit::RotationOf(uint32_t body) const {
     const Quaternion start = bodies_.RotationOf(body);
     if (!bodies_.dynamics[body].HasGyroscopicTorque() || !joints_.HasAny(body)) return start;
     const float* turn = bodies_.states[body].deltaRotation;
-    const float* half = bodies_.states[body].halfTurn;
-    return Quaternion{turn[0] * half[0], turn[1] * half[0], turn[2] * half[0], half[1]} * start;
+    return RotationFromVector(Vector3(turn[0], turn[1], turn[2])) * start;
 }
 
 // m, of the center of mass, relative to that of the lowest body of the island.

@@ -41,10 +41,10 @@ struct IslandEnergy {
 
 class EnergyLimit {
 public:
-    // parents, islandOf: by body of the world; islands: as many as the group has bodies. All uninitialized.
+    // parents, islandOf: by body of the world; members, islands: as many as the group has bodies. All uninitialized.
     EnergyLimit(BodyStore& bodies, const JointStore& joints, const PairStore& pairs, const SolverLayout& layout,
                 const SolverGroup& group, std::span<uint32_t> parents, std::span<uint32_t> islandOf,
-                std::span<IslandEnergy> islands);
+                std::span<uint32_t> members, std::span<IslandEnergy> islands);
 
     // In each substep: before the poses are integrated, and at its end. A gyroscopic torque adds no energy, but that of
     // a push would.
@@ -61,9 +61,7 @@ private:
     }
     Velocity SolvedOf(uint32_t body) const { return {bodies_.LinearVelocityOf(body), bodies_.AngularVelocityOf(body)}; }
     static bool IsLimited(const IslandEnergy& island) { return island.isPushed && !island.isDriven; }
-    std::span<const uint32_t> Bodies() const {
-        return std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
-    }
+    std::span<const uint32_t> Bodies() const { return members_; }
     IslandEnergy& IslandOf(uint32_t body) const { return islands_[islandOf_[body]]; }
     Quaternion RotationOf(uint32_t body) const;
     Position PlaceOf(uint32_t body) const;
@@ -76,6 +74,8 @@ private:
     const SolverLayout& layout_;
     const SolverGroup& group_;
     std::span<const uint32_t> islandOf_;  // by body: in `islands_`
+    // Sorted: their order in the group is another one after a snapshot was restored, and sums depend on it.
+    std::span<const uint32_t> members_;
     std::span<IslandEnergy> islands_;
 };
 

@@ -110,8 +110,10 @@ public:
     }
 
     // Also limits the energy of islands with joints that are pushed fast.
-    void LimitEnergyWith(std::span<uint32_t> parents, std::span<uint32_t> islandOf, std::span<IslandEnergy> islands) {
-        energyLimit_.emplace(bodies_, moved_.joints, moved_.pairs, layout_, group_, parents, islandOf, islands);
+    void LimitEnergyWith(std::span<uint32_t> parents, std::span<uint32_t> islandOf, std::span<uint32_t> members,
+                         std::span<IslandEnergy> islands) {
+        energyLimit_.emplace(bodies_, moved_.joints, moved_.pairs, layout_, group_, parents, islandOf, members,
+                             islands);
     }
 
     // A group of small islands: one worker, from beginning to end.
@@ -517,9 +519,12 @@ void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayou
     const std::span<uint32_t> parents = scratch.Allocate<uint32_t>(limitsAny ? bodies : 0),
                               islandOf = scratch.Allocate<uint32_t>(limitsAny ? bodies : 0);
     std::span<std::span<IslandEnergy>> islands = scratch.Allocate<std::span<IslandEnergy>>(groups.size());
-    for (size_t g = 0; g < groups.size(); ++g)
-        islands[g] =
-            scratch.Allocate<IslandEnergy>(verbsOf[g].limitsEnergy ? groups[g].bodiesEnd - groups[g].bodiesBegin : 0);
+    std::span<std::span<uint32_t>> members = scratch.Allocate<std::span<uint32_t>>(groups.size());
+    for (size_t g = 0; g < groups.size(); ++g) {
+        const size_t count = verbsOf[g].limitsEnergy ? groups[g].bodiesEnd - groups[g].bodiesBegin : 0;
+        islands[g] = scratch.Allocate<IslandEnergy>(count);
+        members[g] = scratch.Allocate<uint32_t>(count);
+    }
     const auto pseudoOf = [&](size_t g) { return verbsOf[g].pulls ? pseudo.data() : nullptr; };
     const std::span<const Verb> usual = loopOf(EffortOf(step, groups.front()), JointVerbs{});
     std::span<std::span<const Verb>> loops = scratch.Allocate<std::span<const Verb>>(groups.size());
@@ -538,7 +543,7 @@ void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayou
             if (groups[g].isLarge) continue;
             const Effort effort = EffortOf(step, groups[g]);
             StepSolver solver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local);
-            if (verbsOf[g].limitsEnergy) solver.LimitEnergyWith(parents, islandOf, islands[g]);
+            if (verbsOf[g].limitsEnergy) solver.LimitEnergyWith(parents, islandOf, members[g], islands[g]);
             solver.RunAlone(loops[g], workers.findings[range.worker]);
         }
     });
