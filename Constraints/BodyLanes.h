@@ -32,6 +32,12 @@ FULCRUM_FORCE_INLINE Wide<N> GatherMass(const uint32_t (&index)[N], const BodyMa
     return r[BodyMass::kFlags];
 }
 
+// Mask of the lanes of a batch that are in use.
+template <class Batch>
+uint32_t LanesOf(const Batch& batch) {
+    return (1u << batch.count) - 1;
+}
+
 // Whether a body has a locked translation.
 template <int N>
 FULCRUM_FORCE_INLINE bool AnyLocked(const Wide<N>& flags) {

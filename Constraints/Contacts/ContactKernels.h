@@ -26,12 +26,6 @@ struct Twists {
     Real a[8], b[8];
 };
 
-// The lanes in use.
-template <int N, bool kFixedB>
-uint32_t LanesOf(const ContactBatch<N, kFixedB>& batch) {
-    return (1u << batch.count) - 1;
-}
-
 // Reads velocities only.
 template <int N, bool kFixedB>
 void GatherVelocities(const ContactBatch<N, kFixedB>& batch, const BodyState* states, Twists<N, kFixedB>& twists) {

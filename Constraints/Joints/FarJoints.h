@@ -113,9 +113,6 @@ FULCRUM_FORCE_INLINE auto IsPushedFar(const Real& gap, const Real& angle, const 
     return ((gap * rate > fast) & isLong) | ((angle * rate > fast) & (angle > Real(kLeast)));
 }
 
-// Mask of the first `count` lanes, which have joints.
-inline uint32_t LanesInUse(int count) { return (1u << count) - 1u; }
-
 // For these lanes, adds the change of velocity due to the rotation of a substep at once instead of in the next substep.
 template <int N>
 inline void AddAtOnce(const WideMask<N>& lanes, Vec3<Wide<N>>& turned, Vec3<Wide<N>>& velocity) {

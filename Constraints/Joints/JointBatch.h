@@ -132,8 +132,8 @@ struct JointBatch {
     // block. Rows from this index on are locks in no lane.
     uint32_t lockRowCount;
     bool overridesMass = false;  // some lane has a MassOverride
-    bool isGuided = false;  // some lane has a body with locked translations
-    Real guided;            // 1: that lane
+    bool isGuided = false;       // some lane has a body with locked translations
+    Real guided;                 // 1: that lane
 
     InverseMass<Real> massA, massB;
     PointPart<Real> point;

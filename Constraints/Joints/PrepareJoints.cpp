@@ -265,7 +265,7 @@ void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const Joint
     const Real near = SecondsNear(wasPulled, isDistant, settings);
     batch.pushed =
         IsPushedFar<Real>(distance / rate, angle / rate, batch.startArmA, batch.startArmB, settings).ToBits() &
-        LanesInUse(batch.count);
+        LanesOf(batch);
     const auto mayPull =
         MayPull<Real>(distance / rate, batch.startArmA, batch.startArmB, wasPulled, batch.secondsOfTeleport);
     const auto isFar = (((distance > least) & mayPull) |

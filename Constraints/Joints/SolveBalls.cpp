@@ -131,7 +131,7 @@ FULCRUM_FORCE_INLINE void FindFar(BallBatch<N>& batch, const Vec3<Wide<N>>& offs
     const auto isDistant = error > Real(FarPush(settings));
     batch.pushed =
         IsPushedFar<Real>(error * (most / rate), Real(0.0f), batch.startArmA, batch.startArmB, settings).ToBits() &
-        LanesInUse(batch.count);
+        LanesOf(batch);
     const Real near = SecondsNear(wasPulled, isDistant, settings);
     const auto mayPull =
         MayPull<Real>(error * (most / rate), batch.startArmA, batch.startArmB, wasPulled, batch.secondsOfTeleport);
@@ -319,6 +319,7 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstS
     place.armB = batch.startArmB = armAt(batch.bodyB, VectorAt<JointRecord::kAnchorB>(anchors));
     place.offset = batch.startOffset =
         WithinReach<Real>(GatherOffset<N>(batch.bodyA, batch.bodyB, bodies.poses) + place.armB - place.armA);
+    batch.secondsOfTeleport = SecondsLeft<Real>(impulses[JointRecord::kSecondsOfTeleport], settings);
     FindFar(batch, place.offset, impulses[JointRecord::kWasPulled], settings);
     findings.far |= batch.far;
     findings.pushed |= batch.pushed != 0;
@@ -327,7 +328,6 @@ void PrepareJoints(BallBatch<N>& batch, const JointRecord* records, const ConstS
     batch.armB = place.armB;
     batch.earlier = Zero<Real>();
     batch.follows = Real(0.0f);
-    batch.secondsOfTeleport = SecondsLeft<Real>(impulses[JointRecord::kSecondsOfTeleport], settings);
     if (batch.round) {
         GatherMasses<true>(batch, bodies.masses);
         batch.mass = MassAt<true>(batch, place.armA, place.armB);

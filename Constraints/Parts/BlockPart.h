@@ -124,6 +124,7 @@ public:
     // K^-1 without the softness; zero if inactive. kg or kg m2.
     const Symmetric& GetEffectiveMass() const { return effectiveMass_; }
 
+    // In place of that of the set-up, once per substep after it: for a generalized or damped inverse of K.
     void SetEffectiveMass(const Symmetric& effectiveMass) { effectiveMass_ = effectiveMass; }
 
     State SaveState() const { return {totalLambda_}; }

@@ -154,7 +154,7 @@ double EnergyLimit::EnergyOf(uint32_t body, const Velocity& velocity) const {
 
 void EnergyLimit::NoteFree() {
     for (IslandEnergy& island : islands_) island.free = 0;
-    for (const uint32_t body : Bodies())
+    for (const uint32_t body : members_)
         if (IslandEnergy& island = IslandOf(body); IsLimited(island)) island.free += EnergyOf(body, FreeOf(body));
 }
 
@@ -194,7 +194,7 @@ void EnergyLimit::FindRigidMotion(IslandEnergy& island) const {
     // Sums about the center of the lowest body: kg m, kg m/s, kg m2/s, kg m2.
     Position moment = Position::Zero(), momentum = Position::Zero(), angular = Position::Zero();
     Sym3<double> inertia;
-    for (const uint32_t body : Bodies()) {
+    for (const uint32_t body : members_) {
         const BodyDynamics& d = bodies_.dynamics[body];
         if (&IslandOf(body) != &island || !(d.inverseMass > 0)) continue;
         const double mass = 1.0 / double{d.inverseMass};
@@ -219,7 +219,7 @@ void EnergyLimit::Apply() {
         island.solved = island.work = 0;
         island.scale = 1;
     }
-    for (const uint32_t body : Bodies())
+    for (const uint32_t body : members_)
         if (IslandEnergy& island = IslandOf(body); IsLimited(island)) island.solved += EnergyOf(body, SolvedOf(body));
     bool anyExceeds = false;
     for (IslandEnergy& island : islands_)
@@ -234,7 +234,7 @@ void EnergyLimit::Apply() {
         if (energy > kTolerance * allowed && energy > kLeastEnergy * island.mass)
             island.scale = static_cast<float>(std::sqrt(allowed / energy));
     }
-    for (const uint32_t body : Bodies()) {
+    for (const uint32_t body : members_) {
         const IslandEnergy& island = IslandOf(body);
         if (island.scale >= 1) continue;
         const RigidMotion& rigid = island.rigid;

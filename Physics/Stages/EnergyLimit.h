@@ -61,7 +61,6 @@ private:
     }
     Velocity SolvedOf(uint32_t body) const { return {bodies_.LinearVelocityOf(body), bodies_.AngularVelocityOf(body)}; }
     static bool IsLimited(const IslandEnergy& island) { return island.isPushed && !island.isDriven; }
-    std::span<const uint32_t> Bodies() const { return members_; }
     IslandEnergy& IslandOf(uint32_t body) const { return islands_[islandOf_[body]]; }
     Quaternion RotationOf(uint32_t body) const;
     Position PlaceOf(uint32_t body) const;

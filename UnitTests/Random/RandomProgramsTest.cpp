@@ -63,6 +63,7 @@ TEST(RandomPrograms, InvariantsHoldForSeedsThatOnceFailed) {
         32006483,   // two bodies far larger than the height field between them hit each other again and again: 2.6 s
         430003318,  // a waiting body that one without continuous collision moves into was cast in 64 rounds: 1.1 s
         460003727,  // a shape cast beside a box of 1.7 million meters depended on the order of the tree
+        560006105,  // ball joints read for how long a teleport had been before that was read from their record
         421005905,  // a listener's surface velocity of a contact that has no points when a snapshot is saved
     };
     const Watch watch(kIsSanitized ? 600 : 60);
