@@ -494,7 +494,9 @@ bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
     };
     VisitBatches(layout, group, note);
     if (&group == &layout.groups.front())
-        ForEachOverflowList(layout, [&](const auto& batches) { std::ranges::for_each(batches, note); });
+        ForEachOverflowList(layout, [&](const auto& batches) {
+            for (const auto& batch : batches) note(batch);
+        });
     return far;
 }
 
