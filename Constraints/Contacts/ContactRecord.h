@@ -73,11 +73,11 @@ struct alignas(32) ContactRecord {
     enum Mark { kSurfaceVelocity = 1, kMassOverride = 2, kSensed = 4, kRecollided = 8, kApart = 16 };
     // kSensed: the contact is an event, but not solved
     // kRecollided: it was found again within the step, and its rows are to be replaced; kApart: it was not found
-    bool Has(Mark mark) const { return (static_cast<int>(marks) & mark) != 0; }
-    void Set(Mark mark, bool has) {
-        const int others = static_cast<int>(marks) & ~mark;
-        marks = static_cast<float>(has ? others | mark : others);
-    }
+    static constexpr int kAllMarks = kSurfaceVelocity | kMassOverride | kSensed | kRecollided | kApart;
+    // The bits, none if `marks` is not finite.
+    int Marks() const { return marks >= 0 && marks <= kAllMarks ? static_cast<int>(marks) : 0; }
+    bool Has(Mark mark) const { return (Marks() & mark) != 0; }
+    void Set(Mark mark, bool has) { marks = static_cast<float>(has ? Marks() | mark : Marks() & ~mark); }
 };
 static_assert(sizeof(ContactRecord) == 160 &&
               sizeof(ContactRecord::Point) == sizeof(float) * ContactRecord::kPointFloats);
