@@ -157,6 +157,9 @@ struct ContactSolveSettings {
     // Sets maxPushSpeed and, from PushSoftnessOf (RowSoftness.h) for a substep of h seconds, pushRate, massScale and
     // impulseScale, and stiffening from both.
     void Soften(float frequency, float dampingRatio, float h, float itsMaxPushSpeed);
+    // Hard rows that leave overlaps as they are, with friction: it cannot react to a recovery speed then, and resists
+    // what impacts would slide by within the substep if friction were left to the relax iterations.
+    void StopRecovery();
 };
 
 // Fills the rows of a batch whose contacts and bodies are set from the records. Returns the bit mask of lanes that got

@@ -47,6 +47,12 @@ void ContactSolveSettings::Soften(float frequency, float dampingRatio, float h, 
     stiffening = impulseScale / maxPushSpeed;
 }
 
+void ContactSolveSettings::StopRecovery() {
+    pushRate = impulseScale = stiffening = mostStiffer = 0;
+    massScale = 1;
+    relaxes = false;
+}
+
 template <int N, bool kFixedB>
 void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     WarmStartRows(batch, states);

@@ -12,6 +12,9 @@ namespace fulcrum {
 
 struct Effort {
     SolverSettings solver;
+    // Of the velocity iterations the first so many solve impacts, with friction, and leave overlaps as they are
+    // (ContactSolveSettings::StopRecovery).
+    int impactIterations;
     float substepDt;  // s
     bool hasTrees;    // see RunTrees
     float
@@ -122,6 +125,8 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte && !group.HasTrees();
     if (!corrects) effort.solver.positionCorrection = PositionCorrection::SoftRelax;
     contacts.relaxes = !corrects && effort.solver.positionIterations > 0;
+    // Half of what the system's settings ask for: those added for gaps push joints, to which friction would react.
+    effort.impactIterations = contacts.relaxes ? s.solver.velocityIterations / 2 : 0;
     contacts.baumgarte = joints.baumgarte = s.solver.baumgarte;
     contacts.mostCorrection = s.contactPushSpeed * h;
     joints.pushes = !corrects;

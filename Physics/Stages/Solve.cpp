@@ -34,6 +34,7 @@ enum class Verb : uint8_t {
     WarmStart,
     FirstVelocities,
     Velocities,
+    Impacts,  // velocity iterations in which contacts leave overlaps (Effort::impactIterations)
     // Serial, for contacts with large velocity errors, or overlaps that grow fast (LocalIterations.h):
     IterateVelocities,
     IterateRelax,
@@ -208,7 +209,8 @@ private:
                     for (JointBatch<kLanes>& batch : own) RotateJointImpulses(batch, states);
                 solve(false);
                 break;
-            case Verb::Velocities: solve(false); break;
+            case Verb::Velocities:
+            case Verb::Impacts: solve(false); break;
             case Verb::FirstRelax:
             case Verb::Separations: {
                 JointSolveSettings settings = effort_.joints;
@@ -282,7 +284,8 @@ private:
             // Poses are integrated with these velocities over the whole substep: they approximate those at its middle.
             case Verb::FirstVelocities:
             case Verb::Velocities:
-                SolveContactVelocities(batch, states, ContactSettingsAt(substep, 0.5f));
+            case Verb::Impacts:
+                SolveContactVelocities(batch, states, VelocitySettingsAt(verb, substep));
                 local_.Check(batch, substep);
                 break;
             case Verb::FirstPull:
@@ -343,7 +346,8 @@ private:
         switch (verb) {
             case Verb::WarmStart: WarmStartJoints(batch, states); break;
             case Verb::FirstVelocities:
-            case Verb::Velocities: SolveJointVelocities(batch, states, settings); break;
+            case Verb::Velocities:
+            case Verb::Impacts: SolveJointVelocities(batch, states, settings); break;
             case Verb::FirstPull:
             case Verb::Pull: PullJoints(batch, pseudo_, settings); break;
             case Verb::FirstRelax:
@@ -404,6 +408,13 @@ private:
         return settings;
     }
 
+    ContactSolveSettings VelocitySettingsAt(Verb verb, uint8_t substep) const {
+        ContactSolveSettings settings = ContactSettingsAt(substep, 0.5f);
+        const bool isFirst = verb == Verb::FirstVelocities && effort_.impactIterations > 0;
+        if (isFirst || verb == Verb::Impacts) settings.StopRecovery();
+        return settings;
+    }
+
     const CollideStores& stores_;  // of the start of the step
     const MovedBodies& moved_;
     BodyStore& bodies_;
@@ -433,8 +444,8 @@ struct JointVerbs {
 };
 
 // The solver loop as the sequence of its verbs. notes: for contact events.
-std::span<const Verb> LoopOf(const SolverSettings& settings, const JointVerbs& joints, bool notes,
-                             ScratchArena& scratch) {
+std::span<const Verb> LoopOf(const Effort& effort, const JointVerbs& joints, bool notes, ScratchArena& scratch) {
+    const SolverSettings& settings = effort.solver;
     const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
                                                kPullIterations + kStopIterations + 16);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
@@ -446,7 +457,9 @@ std::span<const Verb> LoopOf(const SolverSettings& settings, const JointVerbs& j
         verbs[n++] = Verb::IntegrateVelocities;
         if (substep == 0) verbs[n++] = Verb::WarmStart;
         for (int i = 0; i < settings.velocityIterations; ++i)
-            verbs[n++] = i == 0 ? Verb::FirstVelocities : Verb::Velocities;
+            verbs[n++] = i == 0                        ? Verb::FirstVelocities
+                         : i < effort.impactIterations ? Verb::Impacts
+                                                       : Verb::Velocities;
         verbs[n++] = Verb::IterateVelocities;
         if (joints.pulls) {
             verbs[n++] = Verb::ClearPulls;
@@ -564,7 +577,7 @@ void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& p
     }
     RunVerbs({step, bodies, colliders, joints, coloring, pairs}, {step.settings, colliders, pairs, joints, bodies},
              layout, ofStep, pushes, workers, [&](const Effort& effort, const JointVerbs& verbs) {
-                 return LoopOf(effort.solver, verbs, !layout.notes.empty(), workers.scratch);
+                 return LoopOf(effort, verbs, !layout.notes.empty(), workers.scratch);
              });
     if (pushes.empty()) return;
     for (const SolverGroup& group : layout.groups)
