@@ -132,7 +132,7 @@ TEST(HitThrough, ATaperedCapsuleTipsOverOntoItsOtherEnd) {
 }
 
 // What rolls fast over the ridge between two triangles had a contact with the ridge alone, and its corners went through
-// the faces beside it.
+// the faces beside it, by up to 0.16 inner radii.
 TEST(HitThrough, CornersOfWhatRollsOverARidgeStopAtTheFacesBesideIt) {
     const float slope = 0.4f;
     const std::vector<Vector3> corners = {{-9, -9 * slope, -9}, {0, 0, -9}, {9, -9 * slope, -9},
@@ -152,7 +152,7 @@ TEST(HitThrough, CornersOfWhatRollsOverARidgeStopAtTheFacesBesideIt) {
         RandomPoses random(static_cast<uint32_t>(seed));
         TestWorld world;
         world.Add({.shape = ridge, .motion = MotionType::Static});
-        const float x = random.Between(-0.5f, 0.5f), side = random.Between(-4, 4), down = random.Between(1, 8),
+        const float x = random.Between(-0.5f, 0.5f), side = random.Between(-4, 4), down = random.Between(1, 16),
                     spin = random.Between(-12, 12);
         const Quaternion rotation = random.Rotation();
         const BodyId id = world.Add({.shape = ball,
@@ -169,7 +169,7 @@ TEST(HitThrough, CornersOfWhatRollsOverARidgeStopAtTheFacesBesideIt) {
             }
         }
     }
-    EXPECT_LT(worst, 0.15 * inner);
+    EXPECT_LT(worst, 0.05 * inner);
 }
 
 }  // namespace
