@@ -60,5 +60,10 @@ TEST(GuidedMechanisms, DoNotExplodeInAPile) {
         EXPECT_LT(FastestOfGuidedScene(seed), 50) << "seed " << seed;
 }
 
+TEST(GuidedMechanisms, GainNoEnergyInAPile) {
+    for (uint32_t seed = 1; seed <= static_cast<uint32_t>(Cases(10)); ++seed)
+        EXPECT_LT(EnergyRiseOfGuidedScene(seed), 0.005) << "seed " << seed;
+}
+
 }  // namespace
 }  // namespace fulcrum::testing

@@ -12,12 +12,16 @@ namespace {
 
 constexpr int kSteps = 90;
 
-std::vector<BodyId> AddBodies(TestWorld& world, uint32_t seed) {
-    world.AddFloor({.friction = 0.5f});
+void AddPlate(TestWorld& world) {
     world.Add({.shape = BoxOf(3, 0.1f, 3),
                .motion = MotionType::Kinematic,
                .position = {0, 0.2, 0},
                .angularVelocity = {0, 1, 0}});
+}
+
+std::vector<BodyId> AddBodies(TestWorld& world, uint32_t seed, bool hasPlate = true) {
+    world.AddFloor({.friction = 0.5f});
+    if (hasPlate) AddPlate(world);
     const ShapePtr shapes[] = {
         SphereOf(0.35f), BoxOf(0.4f, 0.2f, 0.3f), CapsuleOf(0.3f, 0.2f),
         HullOf({{0.4f, -0.2f, 0}, {-0.3f, -0.2f, 0.3f}, {-0.3f, -0.2f, -0.3f}, {0, 0.4f, 0}}),
@@ -77,6 +81,27 @@ float FastestOfGuidedScene(uint32_t seed) {
         for (const BodyId id : bodies) fastest = std::max(fastest, Length(world.VelocityOf(id)));
     }
     return fastest;
+}
+
+double EnergyRiseOfGuidedScene(uint32_t seed) {
+    TestWorld world;
+    const std::vector<BodyId> bodies = AddBodies(world, seed, false);
+    const auto energy = [&] {
+        double sum = 0;
+        for (const BodyId id : bodies)
+            sum += double{world.Bodies().GetKineticEnergy(id)} +
+                   9.81 * double{world.Bodies().GetMass(id)} * world.Bodies().GetCenterOfMass(id).y();
+        return sum;
+    };
+    const double start = energy();
+    double least = start, rise = 0;
+    for (int i = 0; i < 240; ++i) {
+        world.Step();
+        const double now = energy();
+        least = std::min(least, now);
+        rise = std::max(rise, now - least);
+    }
+    return rise / start;
 }
 
 }  // namespace fulcrum::testing

@@ -12,4 +12,9 @@ uint64_t HashOfGuidedScene(uint32_t threads);
 // m/s: the fastest of the bodies in 240 steps of such a scene, made from the seed.
 float FastestOfGuidedScene(uint32_t seed);
 
+// The most that its kinetic and potential energy rise above their least so far in 240 steps, as a fraction of what
+// there is in the beginning, zero being the floor: without the kinematic plate that turns below the bodies, which
+// wedges those that locked axes hold in its way, and throws them.
+double EnergyRiseOfGuidedScene(uint32_t seed);
+
 }  // namespace fulcrum::testing
