@@ -73,6 +73,7 @@ TEST(Rest, PyramidsStopCreepingAndFallAsleep) {
 TEST(Rest, FallenPyramidsDriftLessWithMoreIterations) {
     const int most = kIsSanitized ? 4 : 16;
     for (const double gap : {0.4, 0.5, 0.6}) {
+        if (kIsSanitized && gap != 0.5) continue;
         double before = std::numeric_limits<double>::infinity();
         for (int iterations = 1; iterations <= most; iterations *= 4) {
             SystemSettings settings = NoSleep();
