@@ -85,7 +85,7 @@ enum class PositionCorrection : uint8_t {
 
 // Solver effort: trades speed for accuracy.
 struct SolverSettings {
-    int substeps = 4;            // 1..255; each integrates dt / substeps
+    int substeps = 4;  // 1..255; each integrates dt / substeps
     // 1..255 per substep. Of several the first half solves impacts with friction, and the second separates overlaps.
     int velocityIterations = 1;
     int positionIterations = 1;  // 0..255 per substep: relax iterations (SoftRelax) or position iterations (Baumgarte)
