@@ -139,7 +139,7 @@ struct ContactSolveSettings {
     float stiffening = 0;   // s/m: reduction of impulseScale per m/s by which the limit cuts the recovery speed
     float mostStiffer = 0;  // 0..1: largest reduction
     float slop;             // m: allowed overlap, not corrected
-    bool relaxes = true;    // relax iterations follow; friction is then solved in those only
+    bool relaxes = true;    // relax iterations follow; friction is then left to those, but see StopRecovery
     // The largest velocity error of a normal row with which a contact counts as solved: 1/s, times inverseSoftDepth,
     // but at least leastError, m/s.
     float mostError = std::numeric_limits<float>::infinity(), leastError = 0;

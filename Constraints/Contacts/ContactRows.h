@@ -99,11 +99,12 @@ FULCRUM_FORCE_INLINE Real SlowestImpact(const Bounciness<Real>& bounciness, cons
     return Select(bounciness.closing > Real(0.0f), slowest, Min(slowest, few * bounciness.acceleration));
 }
 
-// What a velocity iteration solves. If relax iterations follow, friction is solved in those only: a friction row would
-// react to the recovery velocity of overlaps, but too late for the positions, and layers of boxes would creep.
+// What an iteration solves. If relax iterations follow, friction is not solved together with penetration recovery: a
+// friction row would react to the recovery velocity, but too late for the positions, and layers of boxes would creep.
 enum class Pass {
     Push,             // normal rows, with penetration recovery
-    PushAndFriction,  // the same with friction: if no relax iteration follows, or body B is kinematic
+    PushAndFriction,  // the same with friction: if no relax iteration follows, body B moves by itself, or without
+                      // recovery
     Relax             // friction and normal rows, without penetration recovery
 };
 

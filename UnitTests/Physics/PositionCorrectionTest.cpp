@@ -136,9 +136,9 @@ TEST(PositionCorrection, CreatedOverlapsComeApartWithoutSpeed) {
         EXPECT_GT(world.PositionOf(boxes[i + 1]).x() - world.PositionOf(boxes[i]).x(), 0.999);
 }
 
-// A wall of ten layers, 30 s. Measured in mm, top too low / sideways: with one substep of ten iterations soft rows,
-// which are capped at 15 Hz there, 33.3 / 0.5; position passes 6.0 / 1.4, of which each of ten layers leaves its slop
-// of 1. Without a slop contacts come and go, and the top was 173 aside.
+// A wall of ten layers, 30 s. Measured in mm, top too low / sideways: with one substep of ten iterations soft rows 8.3 /
+// 3.4; position passes 6.1 / 4.5, of which each of ten layers leaves its slop of 1. Without a slop contacts come and go,
+// and the top was 173 aside.
 struct WallTop {
     double sink, aside;  // m
 };
@@ -172,7 +172,7 @@ TEST(PositionCorrection, HoldsAWallAtFewSubsteps) {
         EXPECT_LT(top.aside, 0.005) << effort[0] << " " << effort[1];
         if (effort[1] > 10 || effort[0] > 1) continue;
         solver.positionCorrection = PositionCorrection::SoftRelax;
-        EXPECT_LT(top.sink, 0.75 * TopOfWall(solver).sink);
+        EXPECT_LT(top.sink, 0.73 * TopOfWall(solver).sink);
     }
 }
 

@@ -90,7 +90,7 @@ double EnergyRiseOfGuidedScene(uint32_t seed) {
         double sum = 0;
         for (const BodyId id : bodies)
             sum += double{world.Bodies().GetKineticEnergy(id)} +
-                   9.81 * double{world.Bodies().GetMass(id)} * world.Bodies().GetCenterOfMass(id).y();
+                   kGravity * double{world.Bodies().GetMass(id)} * world.Bodies().GetCenterOfMass(id).y();
         return sum;
     };
     const double start = energy();
