@@ -136,9 +136,9 @@ TEST(PositionCorrection, CreatedOverlapsComeApartWithoutSpeed) {
         EXPECT_GT(world.PositionOf(boxes[i + 1]).x() - world.PositionOf(boxes[i]).x(), 0.999);
 }
 
-// A wall of ten layers, 30 s. Measured in mm, top too low / sideways: with one substep of ten iterations soft rows 8.3 /
-// 3.4; position passes 6.1 / 4.5, of which each of ten layers leaves its slop of 1. Without a slop contacts come and go,
-// and the top was 173 aside.
+// A wall of ten layers, 30 s. Measured in mm, top too low / sideways: with one substep of ten iterations soft rows 8.3
+// / 3.4; position passes 6.1 / 4.5, of which each of ten layers leaves its slop of 1. Without a slop contacts come and
+// go, and the top was 173 aside.
 struct WallTop {
     double sink, aside;  // m
 };
