@@ -95,8 +95,10 @@ TEST_F(UserScene, ThatNoSettingSufficesForSaysWhatStandsInTheWay) {
     ASSERT_TRUE(WriteScene(file, Stack()));
     const auto command = ParseLabCommand({"advise", file, "--error", "1e-9"});
     ASSERT_TRUE(command) << command.GetError().message;
-    const std::vector<RunRecord> runs = RunAt(command.Value().lab, {2, 16});
+    std::vector<RunRecord> runs = RunAt(command.Value().lab, {2, 16});
     ASSERT_EQ(runs.size(), 2u);
+    // Times of so small a scene are chance, and on a busy machine one may be any multiple of the other.
+    for (RunRecord& run : runs) run.microseconds = run.traversals;
     for (const RunRecord& run : runs) EXPECT_NE(run.worst.find("body 1 and body 2"), std::string::npos) << run.worst;
     const SceneRuns scene{command.Value().lab.scenes[0], runs};
     const std::string advice = AdviceForError(scene, 1e-9);
