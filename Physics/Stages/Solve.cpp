@@ -254,12 +254,13 @@ private:
     void RunBatches(const Phase& phase, const ColorBatches& color, uint32_t begin, uint32_t end,
                     WorkerFindings& findings) {
         uint32_t first = 0;  // index of the kind's first batch within the color
+        const bool prefetches = !IsOfRecollision(phase.verb);  // which reads little of most batches
         ForEachBatchList(layout_, [&](auto& list, BatchKind kind) {
             const BatchRange& range = color.of[kind];
             const uint32_t last = first + range.Count();
             for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i) {
                 const uint32_t batch = range.begin + i - first;
-                if (i + 1 < last) Prefetch(list.batches[batch + 1]);
+                if (prefetches && i + 1 < last) Prefetch(list.batches[batch + 1]);
                 RunBatch(phase.verb, phase.substep, list.batches[batch], findings);
             }
             first = last;
@@ -304,7 +305,9 @@ private:
                 NoteOutdated(batch, substep);
                 local_.CheckDepths(batch, substep);
                 break;
-            case Verb::StoreOutdated: StoreContacts(batch, stores_.pairs.records.data()); break;
+            case Verb::StoreOutdated:
+                if (MayCollideAgain(batch)) StoreContacts(batch, stores_.pairs.records.data());
+                break;
             case Verb::Recollide: {
                 const uint32_t outdated = batch.rotated | batch.slid;
                 if (outdated == 0) break;
@@ -315,6 +318,7 @@ private:
                 break;
             }
             case Verb::Refill: {
+                if (!MayCollideAgain(batch)) break;
                 RefillContacts(StoresAt(substep),
                                {.impulseScale = 1,
                                 .restitutionSpeed = effort_.contacts.restitutionSpeed,
@@ -371,6 +375,12 @@ private:
         }
     }
 
+    // Whether contacts of the batch may be found again. Surfaces, all of whose manifolds are if one is outdated, are
+    // static or kinematic.
+    template <int N, bool kFixedB>
+    static bool MayCollideAgain(const ContactBatch<N, kFixedB>& batch) {
+        return kFixedB || batch.rotated != 0;
+    }
     template <class Batch>
     void NoteOutdated(const Batch& batch, uint8_t substep) {
         if ((batch.rotated | batch.slid) != 0) lastOutdated_.store(substep + 1, std::memory_order_relaxed);
