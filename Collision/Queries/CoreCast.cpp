@@ -17,6 +17,8 @@ constexpr int kMaxIterations = 64;
 constexpr int kMaxTurningIterations = 200;
 // Axes that rotate with a shape are tried if it is larger than the other by this factor.
 constexpr float kFarLarger = 50;
+// rad: float has no meaningful rotation beyond that, and none takes place.
+constexpr float kFarthestTurn = 1e6f;
 
 using Vec4 = std::array<double, 4>;
 
@@ -91,8 +93,6 @@ CoreCastResult CoresOverlapAtStart() {
 }
 
 Quaternion TurnedBy(const Vector3& turn, const Quaternion& rotation) {
-    // rad: float has no meaningful rotation beyond that.
-    constexpr float kFarthestTurn = 1e6f;
     if (!(turn.cwiseAbs().maxCoeff() < kFarthestTurn)) return rotation;
     return Normalized(RotationFromVector(turn) * rotation);
 }
@@ -160,14 +160,14 @@ CoreCastResult CastLinear(const ConvexShape& a, const ConvexShape& b, const Core
 
 namespace {
 
-// Lower bound of the time for which two rotating shapes stay farther apart than the target distance along an axis n,
-// which is at rest or rotates by u. With r from the center c of a shape, R the radius of its core, w its turn, d the
-// displacement:
-//     n . x(t + s) = n . (c + r) + s (n . d + (u x n) . c + r . (n x (w - u))) + at most the bending,
-// s^2 / 2 (|w| + |u|)^2 R, or nothing if w = u, for r, and s^2 (|u|^2 |c| / 2 + |u| |d|) + s^3 |u|^2 |d| / 6 for c. The
-// linear part is extreme for the shape's support along n + s (n x (w - u)). The difference of B's and A's extremes is a
-// minimum of linear functions, hence concave in s. So if the bound holds at the end of an interval and the shapes are
-// apart at its beginning, it holds in between.
+// Time for which two rotating shapes certainly stay farther apart than the target distance along an axis n, which is at
+// rest or rotates by u. With r from the center c of a shape, R the radius of its core, w its turn, d the displacement,
+// the position of a point along the axis is n . (c + d s + r) at the time s. Its second derivative is at most
+//     w |w x n| R, or (|w| + |u|)^2 R if the axis rotates, or nothing if w = u, for r,
+//     |u|^2 (|c| + |d| s) + 2 |u| |d| for c.
+// A function whose second derivative is at most k exceeds the chord over an interval of length h by no more than
+// k s (h - s) / 2. The extent of a shape is the maximum over its points, which the chord between the maxima at both
+// ends bounds, too. So the shapes stay apart if they are at both ends, by enough for that in between.
 //
 // Along an axis at rest the far ends of a large shape that rotates soon come as far as a small one beside it, wherever
 // that is. An axis that rotates with the large shape is only limited by how the small one moves relative to it.
@@ -177,97 +177,139 @@ public:
     // axis: in the motion's axes.
     AxisAdvance(const ConvexShape& a, const ConvexShape& b, const CoreMotion& motion, const CorePoses& now,
                 const Vector3& axis, double gap, const Vector3& axisTurn = Vector3::Zero())
-        : a_(a, 1, axis, motion.turnOfA, axisTurn, now.rotationOfA),
+        : axis_(axis, axisTurn),
+          a_(a, 1, axis, motion.turnOfA, axisTurn, now.rotationOfA),
           b_(b, -1, axis, motion.turn, axisTurn, now.rotation),
+          center_(motion.PositionAt(now.fraction)),
+          displacement_(motion.displacement.cast<double>()),
           gap_(gap),
-          approach_(-Dot<double>(axis.cast<double>(), motion.displacement.cast<double>())),
-          bending_(a_.Bending() + b_.Bending()) {
-        if (axisTurn.isZero(0)) return;
-        const Position center = motion.PositionAt(now.fraction);
-        const double turn = double{Length(axisTurn)}, moved = double{Length(motion.displacement)},
-                     distance = std::sqrt(Dot<double>(center, center));
-        approach_ -= Dot<double>(Cross<float>(axisTurn, axis).cast<double>(), center);
-        bending_ += turn * (0.5 * turn * distance + moved);
-        twist_ = turn * turn * moved / 6;
-        acceleration_ = bending_ + twist_;
+          start_(Along(0)),
+          approach_(-Dot<double>(axis.cast<double>(), displacement_)) {
+        const double turn = double{Length(axisTurn)};
+        if (turn > 0) {
+            const double moved = std::sqrt(Dot<double>(displacement_, displacement_)),
+                         distance = std::sqrt(Dot<double>(center_, center_));
+            approach_ -= Dot<double>(Cross<float>(axisTurn, axis).cast<double>(), center_);
+            curvature_ = turn * (turn * (distance + moved) + 2 * moved);
+        }
+        acceleration_ = curvature_;
+        curvature_ += a_.Curvature() + b_.Curvature();
     }
 
     // Proven time step, as a fraction of the motion; at most `remaining`.
     double Step(double remaining) const {
-        const double speed = approach_ + a_.Speed() + b_.Speed();
-        if ((speed + acceleration_ * remaining) * remaining <= gap_) return remaining;
-        const double sure = 2 * gap_ / (speed + std::sqrt(speed * speed + 4 * acceleration_ * gap_));
-        if (!(sure > 0)) return 0;  // overflow: the search ends early
-        double low = sure, high = remaining;
-        if (Margin(high) > 0) return high;
-        // False position with bisection: each iteration costs two supports.
-        double lowMargin = Margin(low), highMargin = Margin(high);
-        if (!(lowMargin > 0)) return sure;
-        for (int i = 0; i < 8 && high - low > 0.02 * low; ++i) {
-            const double secant = low + (high - low) * 0.95 * lowMargin / (lowMargin - highMargin);
-            const bool isBetween = secant > low && secant < high;  // not where margins are not finite
-            const double middle = i % 2 == 0 && isBetween ? secant : 0.5 * (low + high);
-            const double margin = Margin(middle);
-            (margin > 0 ? low : high) = middle;
-            (margin > 0 ? lowMargin : highMargin) = margin;
+        // Further evaluations find more, but less than GJK along a new axis; nor is more needed than most of the gap.
+        constexpr int kEvaluations = 8;
+        constexpr double kEnough = 0.05;
+        const double fastest = approach_ + acceleration_ * remaining + a_.Speed() + b_.Speed();
+        if (fastest * remaining <= gap_) return remaining;
+        if (!(gap_ / fastest > 0)) return 0;  // overflow: the search ends early
+        double from = 0, gap = gap_, to = remaining, gapAtEnd = GapAt(to);
+        if (StayApart(gap, gapAtEnd, to)) return remaining;
+        for (int i = 0; i < kEvaluations && gap > kEnough * gap_; ++i) {
+            const double part = gapAtEnd < 0 ? gap / (gap - gapAtEnd) : 0.5;  // false position, or bisection
+            const double step = std::max((to - from) * part, gap / fastest), gapThen = GapAt(from + step);
+            if (StayApart(gap, gapThen, step)) {
+                from += step;
+                gap = gapThen;
+            } else {
+                to = from + step;
+                gapAtEnd = gapThen;
+            }
         }
-        return low;
+        return std::min(from + gap / fastest, remaining);
     }
 
 private:
-    // The extent of a shape rotating about its center along the axis, or against it with sign -1.
-    class Turning {
+    // A vector that rotates at a constant rate. turn: rad per motion.
+    class Rotating {
     public:
-        Turning(const ConvexShape& shape, float sign, const Vector3& axis, const Vector3& turn, const Vector3& axisTurn,
-                const Quaternion& rotation)
-            : shape_(shape),
-              sign_(sign),
-              axis_(axis),
-              turned_(Cross<float>(axis, Vector3(turn - axisTurn))),
-              rotation_(ToMatrix(rotation)),
-              radius_(shape.OuterRadius() - std::min(shape.ConvexRadius(), shape.OuterRadius())),
-              isTurning_(!(turn - axisTurn).isZero(0)),
-              bending_(isTurning_ ? BendingOf(turn, axisTurn) * radius_ : 0),
-              start_(isTurning_ ? Extreme(0) : 0) {}
-
-        bool IsTurning() const { return isTurning_; }
-        double Speed() const { return double{Length(turned_)} * radius_; }  // upper bound; m per motion
-        double Bending() const { return bending_; }
-        // Along the axis, m: of the points that are extreme in the linear part of their motion.
-        double Extreme(double step) const {
-            const Vector3 n = axis_ + turned_ * static_cast<float>(step);
-            const Vector3 r = rotation_ * shape_.SupportCore(rotation_.TransposeMultiply(n) * sign_);
-            return Dot<double>(n.cast<double>(), r.cast<double>());
+        Rotating(const Vector3& v, const Vector3& turn)
+            : rate_(Length(turn)),
+              along_(rate_ > 0 ? Vector3(turn * (Dot<float>(turn, v) / (rate_ * rate_))) : v),
+              across_(v - along_),
+              around_(rate_ > 0 ? Vector3(Cross<float>(turn, v) * (1 / rate_)) : Vector3(Vector3::Zero())) {}
+        bool IsTurning() const { return rate_ > 0; }
+        Vector3 At(double time) const {
+            const float angle = rate_ * static_cast<float>(time);
+            const SineCosine<float> of = SinCos<float>(angle < kFarthestTurn ? angle : 0.0f);
+            return along_ + across_ * of.cosine + around_ * of.sine;
         }
-        double Start() const { return start_; }
 
     private:
-        static double BendingOf(const Vector3& turn, const Vector3& axisTurn) {
-            if (axisTurn.isZero(0)) return 0.5 * double{LengthSquared(turn)};
-            const double both = double{Length(turn)} + double{Length(axisTurn)};
-            return 0.5 * both * both;
+        float rate_;
+        Vector3 along_, across_, around_;
+    };
+
+    // The extent of a shape rotating about its center along the axis, or against it with sign -1.
+    class Extent {
+    public:
+        Extent(const ConvexShape& shape, float sign, const Vector3& axis, const Vector3& turn, const Vector3& axisTurn,
+               const Quaternion& rotation)
+            : shape_(shape),
+              sign_(sign),
+              turn_(turn),
+              rotation_(rotation),
+              axis_(InverseRotate(rotation, axis), -InverseRotate(rotation, turn)),
+              isTurning_(!(turn - axisTurn).isZero(0)) {
+            if (!isTurning_) return;
+            const double radius = double{shape.OuterRadius() - std::min(shape.ConvexRadius(), shape.OuterRadius())},
+                         rate = double{Length(turn)}, both = rate + double{Length(axisTurn)};
+            const bool isAxisAtRest = axisTurn.isZero(0);
+            const Vector3 relative = turn - axisTurn;
+            speed_ = radius * double{Length(isAxisAtRest ? Cross<float>(axis, relative) : relative)};
+            curvature_ = isAxisAtRest ? rate * speed_ : both * both * radius;
+        }
+
+        bool IsTurning() const { return isTurning_; }
+        double Speed() const { return speed_; }          // upper bound; m per motion
+        double Curvature() const { return curvature_; }  // likewise; m per motion squared
+        // m, of the core. axis: in the motion's axes; null: at rest.
+        double At(double time, const Vector3* axis) const {
+            const Vector3 n = axis ? InAxesAt(time, *axis) : axis_.At(time);
+            return Dot<double>(n.cast<double>(), shape_.SupportCore(n * sign_).cast<double>());
+        }
+
+    private:
+        Vector3 InAxesAt(double time, const Vector3& v) const {
+            return InverseRotate(TurnedBy(turn_ * static_cast<float>(time), rotation_), v);
         }
 
         const ConvexShape& shape_;
         float sign_;
-        Vector3 axis_, turned_;
-        Matrix3 rotation_;
-        double radius_;
+        Vector3 turn_;
+        Quaternion rotation_;  // now
+        Rotating axis_;        // in the shape's axes, if it is at rest
         bool isTurning_;
-        double bending_, start_;
+        double speed_ = 0, curvature_ = 0;
     };
 
-    double Margin(double step) const {
-        double margin = gap_ - approach_ * step;
-        if (b_.IsTurning()) margin += b_.Extreme(step) - b_.Start();
-        if (a_.IsTurning()) margin -= a_.Extreme(step) - a_.Start();
-        return margin - (bending_ + twist_ * step) * step * step;
+    // m: the extents of what turns relative to the axis, and the distance of the centers if the axis turns.
+    double Along(double time) const {
+        const Vector3 axis = axis_.IsTurning() ? axis_.At(time) : Vector3(Vector3::Zero());
+        const Vector3* turned = axis_.IsTurning() ? &axis : nullptr;
+        double sum = 0;
+        if (turned) sum += Dot<double>(axis.cast<double>(), Position(center_ + displacement_ * time));
+        if (b_.IsTurning()) sum += b_.At(time, turned);
+        if (a_.IsTurning()) sum -= a_.At(time, turned);
+        return sum;
+    }
+    double GapAt(double time) const { return gap_ + Along(time) - start_ - (axis_.IsTurning() ? 0 : approach_ * time); }
+    // Whether the gap stays positive over an interval with these gaps at its ends.
+    bool StayApart(double start, double end, double length) const {
+        if (!(start > 0 && end > 0)) return false;
+        const double bend = curvature_ * length * length;  // k h^2
+        if (!(std::fabs(end - start) < 0.5 * bend)) return bend < std::numeric_limits<double>::infinity();
+        const double at = 0.5 - (end - start) / bend;  // of the least
+        return start + (end - start) * at - 0.5 * bend * at * (1 - at) > 0;
     }
 
-    Turning a_, b_;
-    double gap_, approach_, bending_, twist_ = 0;
-    // What the speed may grow by, m: none along an axis at rest, where the speeds of the shapes are those of all times.
-    double acceleration_ = 0;
+    Rotating axis_;
+    Extent a_, b_;
+    Position center_, displacement_;  // m, of B's center relative to A's
+    double gap_, start_;
+    double approach_;  // m per motion, of the centers along the axis, now
+    double acceleration_ = 0, curvature_ = 0;
 };
 
 bool IsFarLarger(const ConvexShape& shape, const ConvexShape& other) {
