@@ -143,6 +143,12 @@ FULCRUM_FORCE_INLINE Vec2<Real> HalfTurnOf(const Vec3<Real>& v) {
     return Vec2<Real>(Select(isFar, Real(half.sine / angle), scale), Select(isFar, half.cosine, cosine));
 }
 
+// The rotation by a vector, rad, nearly unit.
+inline Quaternion TurnOf(const Vector3& v) {
+    const Vec2<float> half = HalfTurnOf<float>(v);
+    return {v.x() * half.x(), v.y() * half.x(), v.z() * half.x(), half.y()};
+}
+
 // Updates BodyState::halfTurn in a row of displacements from the row's rotation.
 template <class Real>
 FULCRUM_FORCE_INLINE void SetHalfTurn(Real (&row)[8]) {

@@ -1,4 +1,6 @@
 #include <Fulcrum/Physics/Stages/EnergyLimit.h>
+
+#include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
 
 #include <algorithm>
@@ -131,7 +133,7 @@ Quaternion EnergyLimit::RotationOf(uint32_t body) const {
     const Quaternion start = bodies_.RotationOf(body);
     if (!bodies_.dynamics[body].HasGyroscopicTorque() || !joints_.HasAny(body)) return start;
     const float* turn = bodies_.states[body].deltaRotation;
-    return RotationFromVector(Vector3(turn[0], turn[1], turn[2])) * start;
+    return TurnOf({turn[0], turn[1], turn[2]}) * start;
 }
 
 // m, of the center of mass, relative to that of the lowest body of the island.

@@ -217,10 +217,7 @@ void Forget(Pair& pair, ContactRecord& record) {
 Quaternion CollideStores::RotationOf(uint32_t body) const {
     const Quaternion before = bodies.RotationOf(body);
     if (elapsed == 0) return before;
-    const Vector3 turned = DisplacementOf(*this, body).angular;
-    const Vec2<float> half = HalfTurnOf<float>(turned);
-    return Normalized(Quaternion{turned.x() * half.x(), turned.y() * half.x(), turned.z() * half.x(), half.y()} *
-                      before);
+    return Normalized(TurnOf(DisplacementOf(*this, body).angular) * before);
 }
 
 Vector3 CollideStores::OffsetOf(uint32_t bodyA, uint32_t bodyB) const {

@@ -13,6 +13,10 @@ void MarkApart(PairStore& pairs, const Pair& pair) {
     record.Set(ContactRecord::kApart, true);
 }
 
+bool IsFoundAnew(const ContactRecord& record) {
+    return record.Has(ContactRecord::kRecollided) || record.Has(ContactRecord::kApart);
+}
+
 bool IsSolved(const Pair& pair) { return pair.touching && !pair.onSeam && pair.pointCount > 0; }
 
 // Whether the bodies rotate so fast that manifolds are outdated before the end of a substep of h seconds, or body B, a
@@ -47,6 +51,7 @@ void RecollidePair(const CollideStores& stores, uint32_t contact, bool rotated, 
     uint32_t index = pairs.contacts[contact].pair;
     if (!IsSolved(pairs.pairs[index])) return;
     if (!pairs.pairs[index].surface && !rotated) return;
+    if (IsFoundAnew(pairs.RecordOf(pairs.pairs[index]))) return;  // with another manifold of the surface
     if (RotateTooFast(stores, pairs.pairs[index], h)) return;
     if (pairs.pairs[index].isMore) index = pairs.Find(pairs.pairs[index].colliderA, pairs.pairs[index].colliderB);
     Pair& pair = pairs.pairs[index];
@@ -82,7 +87,7 @@ void RefillContacts(const CollideStores& stores, const ContactPrepareSettings& s
     PairStore& pairs = stores.pairs;
     for (int lane = 0; lane < batch.count; ++lane) {
         ContactRecord& record = pairs.records[batch.contact[lane]];
-        if (!record.Has(ContactRecord::kRecollided) && !record.Has(ContactRecord::kApart)) continue;
+        if (!IsFoundAnew(record)) continue;
         record.Set(ContactRecord::kRecollided, false);
         const bool isApart = record.Has(ContactRecord::kApart);
         const Pair& pair = pairs.PairOf(batch.contact[lane]);
