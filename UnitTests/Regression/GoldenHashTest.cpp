@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint64_t kGoldenHash = 0x6d376592e74fffd2ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x372fbb502c40c28dull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x8a2412efce4a6c1aull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x207484a919c2bcefull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
 constexpr uint64_t kGoldenHashOfGuidedBodies = 0xeb30a1b513076854ull;
 
