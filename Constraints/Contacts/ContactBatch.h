@@ -83,7 +83,10 @@ struct ContactBatch {
     uint8_t locks[N];
     uint8_t locksOfAll, locksOfSome;  // of all lanes, and of any
 
-    Vec3<Real> normal, tangent1, tangent2;
+    Real inverseSoftDepth;  // 1/m, of the overlap from which rows stiffen, see ContactSolveSettings
+
+    // All that depends on the manifold, see ContactLanes.h.
+    Vec3<Real> normal;
     Vec3<Real> armA;
     UniformInverseMass<Real> inverseA;
     std::conditional_t<kFixedB, FixedSide<N>, MovingSide<N>> sideB;
@@ -96,14 +99,16 @@ struct ContactBatch {
         Real impulse;          // N s
     };
     Row rows[kPoints];
-    Real response[6];          // J_i M^-1 J_j^T for (i, j) = 01 02 03 12 13 23
+    Real response[6];  // J_i M^-1 J_j^T for (i, j) = 01 02 03 12 13 23
+
+    // Of friction alone. Iterations without friction read nothing from here on.
+    Vec3<Real> tangent1, tangent2;
     Real frictionInverse[3];   // effective masses of t1, t2, twist
     Real slideMass;            // kg, the smallest effective mass of any direction in the tangent plane
     Real frictionResponse[3];  // between t1 and t2, t1 and twist, t2 and twist
     Real coupling[3][3];       // change of V.n, W.t1, W.t2 by a unit impulse of t1, t2, twist
     Real frictionImpulse[3];
     Real friction, twistRadius;
-    Real inverseSoftDepth;  // 1/m, of the overlap from which rows stiffen, see ContactSolveSettings
 };
 
 struct ContactNote;

@@ -8,12 +8,13 @@
 
 namespace fulcrum::contacts {
 
-// The members from the first vector up to those that do not depend on the manifold are arrays of lanes without gaps, in
-// batches of any width.
+// The members from the normal to the end, which depend on the manifold, are arrays of lanes without gaps, in batches of
+// any width.
 template <int N, bool kFixedB>
 struct LaneRegion {
     using Batch = ContactBatch<N, kFixedB>;
-    static constexpr size_t kBegin = offsetof(Batch, normal), kEnd = offsetof(Batch, inverseSoftDepth);
+    static constexpr size_t kBegin = offsetof(Batch, normal),
+                            kEnd = offsetof(Batch, twistRadius) + sizeof(Batch::twistRadius);
     static constexpr size_t kCount = (kEnd - kBegin) / (N * sizeof(float));
     static_assert(kBegin + kCount * N * sizeof(float) == kEnd);
 };

@@ -64,10 +64,17 @@ struct Phase {
     uint16_t color;  // of the large group, from 0; equal to the number of its colors: the overflow
 };
 
+// What a verb reads of a batch of contacts.
+enum class Reads { Little, NormalRows, All };
+
 // Prefetches the next batch while this one is solved.
-FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch) { PrefetchLines(&batch, sizeof batch); }
+FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch, Reads reads) {
+    if (reads == Reads::Little) return;
+    const auto normalRows = reinterpret_cast<const char*>(&batch.tangent1) - reinterpret_cast<const char*>(&batch);
+    PrefetchLines(&batch, reads == Reads::All ? sizeof batch : static_cast<size_t>(normalRows));
+}
 template <class Batch>
-FULCRUM_FORCE_INLINE void Prefetch(const Batch&) {}
+FULCRUM_FORCE_INLINE void Prefetch(const Batch&, Reads) {}
 
 bool IsOverBodies(Verb verb) {
     return verb == Verb::IntegrateVelocities || verb == Verb::ClearPulls || verb == Verb::IntegratePoses;
@@ -250,17 +257,24 @@ private:
         return std::span(layout_.joints.batches).subspan(begin, end - begin);
     }
 
+    Reads ReadsOf(Verb verb) const {
+        if (IsOfRecollision(verb)) return Reads::Little;
+        const bool isWithoutFriction =
+            verb == Verb::Velocities || (verb == Verb::FirstVelocities && effort_.impactIterations == 0);
+        return isWithoutFriction && effort_.contacts.relaxes ? Reads::NormalRows : Reads::All;
+    }
+
     // Runs batches [begin, end) of a color, kind after kind.
     void RunBatches(const Phase& phase, const ColorBatches& color, uint32_t begin, uint32_t end,
                     WorkerFindings& findings) {
         uint32_t first = 0;  // index of the kind's first batch within the color
-        const bool prefetches = !IsOfRecollision(phase.verb);  // which reads little of most batches
+        const Reads reads = ReadsOf(phase.verb);
         ForEachBatchList(layout_, [&](auto& list, BatchKind kind) {
             const BatchRange& range = color.of[kind];
             const uint32_t last = first + range.Count();
             for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i) {
                 const uint32_t batch = range.begin + i - first;
-                if (prefetches && i + 1 < last) Prefetch(list.batches[batch + 1]);
+                if (i + 1 < last) Prefetch(list.batches[batch + 1], reads);
                 RunBatch(phase.verb, phase.substep, list.batches[batch], findings);
             }
             first = last;
