@@ -198,7 +198,7 @@ public:
 
     // Proven time step, as a fraction of the motion; at most `remaining`.
     double Step(double remaining) const {
-        // Further evaluations find more, but less than GJK along a new axis; nor is more needed than most of the gap.
+        // Most of the gap is enough, and more evaluations save hardly any GJK: it finds a better axis.
         constexpr int kEvaluations = 8;
         constexpr double kEnough = 0.05;
         const double fastest = approach_ + acceleration_ * remaining + a_.Speed() + b_.Speed();
