@@ -163,7 +163,7 @@ namespace {
 // Time for which two rotating shapes certainly stay farther apart than the target distance along an axis n, which is at
 // rest or rotates by u. With r from the center c of a shape, R the radius of its core, w its turn, d the displacement,
 // the position of a point along the axis is n . (c + d s + r) at the time s. Its second derivative is at most
-//     w |w x n| R, or (|w| + |u|)^2 R if the axis rotates, or nothing if w = u, for r,
+//     |w| |w x n| R, or (|w| + |u|)^2 R if the axis rotates, or nothing if w = u, for r,
 //     |u|^2 (|c| + |d| s) + 2 |u| |d| for c.
 // A function whose second derivative is at most k exceeds the chord over an interval of length h by no more than
 // k s (h - s) / 2. The extent of a shape is the maximum over its points, which the chord between the maxima at both

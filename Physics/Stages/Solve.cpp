@@ -320,7 +320,7 @@ private:
                 local_.CheckDepths(batch, substep);
                 break;
             case Verb::StoreOutdated:
-                if (MayCollideAgain(batch)) StoreContacts(batch, stores_.pairs.records.data());
+                if (MayBeFoundAgain(batch)) StoreContacts(batch, stores_.pairs.records.data());
                 break;
             case Verb::Recollide: {
                 const uint32_t outdated = batch.rotated | batch.slid;
@@ -332,7 +332,7 @@ private:
                 break;
             }
             case Verb::Refill: {
-                if (!MayCollideAgain(batch)) break;
+                if (!MayBeFoundAgain(batch)) break;
                 RefillContacts(StoresAt(substep),
                                {.impulseScale = 1,
                                 .restitutionSpeed = effort_.contacts.restitutionSpeed,
@@ -392,7 +392,7 @@ private:
     // Whether contacts of the batch may be found again. Surfaces, all of whose manifolds are if one is outdated, are
     // static or kinematic.
     template <int N, bool kFixedB>
-    static bool MayCollideAgain(const ContactBatch<N, kFixedB>& batch) {
+    static bool MayBeFoundAgain(const ContactBatch<N, kFixedB>& batch) {
         return kFixedB || batch.rotated != 0;
     }
     template <class Batch>
