@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/Primitives.h>
+#include <Fulcrum/Math/Wide.h>
 
 namespace fulcrum {
 
