@@ -1,11 +1,13 @@
 #include <Fulcrum/Physics/QueryInterface.h>
 
+#include <Fulcrum/Collision/Queries/Bearings.h>
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Physics/Queries/RaySearch.h>
 #include <Fulcrum/Physics/World/Filters.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 namespace fulcrum {
@@ -61,6 +63,26 @@ TreeRay SweptBounds(const WorldState& world, const ShapeCaster& caster, const Po
     return TreeRay(pose.position - OriginOf(world) + center.cast<double>(), displacement,
                    bounds.HalfExtents() + Vector3::Constant(slack));
 }
+
+// What the shape of a cast with ignoreSeparating rests on at the start, for as long as the object lives.
+class CastBearings {
+public:
+    CastBearings(const ColliderSearch& search, const Shape& shape, const Pose& center,
+                 const ShapeCastSettings& settings, ShapeCaster& caster) {
+        if (!settings.ignoreSeparating) return;
+        Bearings& bearings = bearings_.emplace();
+        const Bounds bounds = Inflated(BoundsAbout(search.Origin(), shape, center), caster.ReachOfBearings(settings));
+        search.Run([&](const BoundsTree& tree, const auto& found) { tree.Query(bounds, found); },
+                   [&](uint32_t collider) {
+                       caster.FindBearings(search.ShapeOf(collider), search.PoseOf(collider), settings, bearings);
+                   });
+        bearings.Merge();
+        caster.RestOn(bearings);
+    }
+
+private:
+    std::optional<Bearings> bearings_;
+};
 
 Bounds TreeBounds(const WorldState& world, const Position& lower, const Position& upper) {
     return RoundedOutwards(lower - OriginOf(world), upper - OriginOf(world));
@@ -134,9 +156,10 @@ void QueryInterface::VisitShape(const MovingShape& shape, FunctionRef<float(cons
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return;
     const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
-    const ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
+    ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
     if (!caster.IsValid() || !settings.IsValid()) return;
     const ColliderSearch search(world_, filter);
+    const CastBearings bearings(search, *shape.shape, motion.pose, settings, caster);
     ShapeCastSettings upTo = settings;
     const TreeRay bounds = SweptBounds(world_, caster, motion.pose, shape.displacement, settings);
     AlongRay(search, bounds, upTo.maxFraction, [&](uint32_t collider) {
@@ -155,9 +178,10 @@ bool QueryInterface::CastShape(const MovingShape& shape, WorldShapeHit& hit, con
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return false;
     const ShapeMotion motion{CenterPoseOf(*shape.shape, shape.pose), shape.displacement, shape.turn};
-    const ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
+    ShapeCaster caster(*shape.shape, motion, world_.settings.narrowPhase);
     if (!caster.IsValid() || !settings.IsValid()) return false;
     const ColliderSearch search(world_, filter);
+    const CastBearings bearings(search, *shape.shape, motion.pose, settings, caster);
     ShapeCastSettings upTo = settings;
     bool any = false;
     const TreeRay bounds = SweptBounds(world_, caster, motion.pose, shape.displacement, settings);

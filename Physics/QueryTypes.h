@@ -3,11 +3,11 @@
 
 #include <Fulcrum/Collision/Queries/RayCast.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
-#include <Fulcrum/Jobs/JobSystem.h>
+#include <Fulcrum/Math/Function.h>
+#include <Fulcrum/Math/List.h>
 #include <Fulcrum/Physics/Settings.h>
 
 #include <array>
-#include <optional>
 #include <span>
 
 namespace fulcrum {
@@ -18,10 +18,10 @@ struct QueryFilter {
     // Bodies that a body with this category and mask would collide with. category 0: any mask of theirs; mask ~0: any
     // category of theirs.
     uint64_t category = 0, mask = ~uint64_t(0);
-    std::span<const BodyId> ignore{};                                         // bodies to skip
-    bool sensors = false;                                                     // whether sensors are tested, too
-    std::optional<FunctionRef<bool(BodyId)>> accepts{};                       // additional predicate on bodies
-    std::optional<FunctionRef<bool(BodyId, uint32_t child)>> acceptsChild{};  // additional predicate on children
+    List<BodyId> ignore{};                                  // bodies to skip
+    bool sensors = false;                                   // whether sensors are tested, too
+    Function<bool(BodyId)> accepts{};                       // additional predicate on bodies
+    Function<bool(BodyId, uint32_t child)> acceptsChild{};  // additional predicate on children
 };
 
 // The body is invalid (BodyId{}) if nothing was found.
@@ -76,13 +76,13 @@ struct WorldClosest {
 
 // A shape at a pose, that of the shape's own frame, in which the user described it.
 struct PlacedShape {
-    const Shape* shape = nullptr;  // not null
+    const Shape* shape = nullptr;  // not null; not owned
     Pose pose{};
 };
 
 // A moving convex shape: its center of mass moves along a line, and it rotates about it, both at constant rate.
 struct MovingShape {
-    const ConvexShape* shape = nullptr;      // not null
+    const ConvexShape* shape = nullptr;      // not null; not owned
     Pose pose{};                             // of the shape's own frame at the start
     Vector3 displacement = Vector3::Zero();  // m
     Vector3 turn = Vector3::Zero();          // rad, rotation vector over the whole motion

@@ -6,6 +6,7 @@
 #include <Fulcrum/Collision/Shapes/Shape.h>
 #include <Fulcrum/Constraints/Joints/JointType.h>
 #include <Fulcrum/Math/Function.h>
+#include <Fulcrum/Math/List.h>
 #include <Fulcrum/Physics/GroupFilter.h>
 #include <Fulcrum/Physics/JointSettings.h>
 
@@ -19,9 +20,8 @@ namespace fulcrum {
 // Objects that a snapshot references but does not contain. Needed only if the world does not have them; objects of the
 // world's bodies are found without.
 struct SnapshotSources {
-    std::span<const ShapePtr> shapes{};  // shapes that may be referenced; identified by their content, see ContentHash
-    std::span<const std::shared_ptr<const GroupFilter>>
-        groupFilters{};  // identified by GroupFilter::ContentHash, in this order
+    List<ShapePtr> shapes{};  // shapes that may be referenced; identified by their content, see ContentHash
+    List<std::shared_ptr<const GroupFilter>> groupFilters{};  // identified by GroupFilter::ContentHash, in this order
     // Creates the type of a user-defined joint that the world does not have, as when the joint was created; its
     // settings, state and controls are then overwritten. Null: unknown.
     Function<std::unique_ptr<JointType>(JointId joint)> makeJoint{};

@@ -7,6 +7,9 @@
 
 namespace fulcrum {
 
+// m: what is no higher than this above the surface on which a shape rests continues it. outerRadius: of the shape, m.
+inline float FlushHeight(float outerRadius) { return Min(1e-3f, 0.01f * outerRadius); }
+
 struct ContactTolerances {
     // Fraction of the two shapes' radii: with a larger speculative distance, points other than the closest may touch
     // within the step.

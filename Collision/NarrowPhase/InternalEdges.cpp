@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/NarrowPhase/Features.h>
 #include <Fulcrum/Collision/NarrowPhase/TriangleFaceContact.h>
+#include <Fulcrum/Collision/NarrowPhase/TriangleSide.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -9,9 +10,6 @@
 namespace fulcrum {
 
 namespace {
-
-// A contact normal this close to the face's counts as the face's: a tenth of a degree.
-constexpr float kFaceCosine = 0.9999985f;
 
 // Feature ids that last from step to step: corners of A are the same on every triangle, corners of the surface on all
 // triangles around them.
@@ -58,31 +56,16 @@ void InternalEdgeFilter::AddNearest(const TriangleView& view, const Vector3& axi
 
 void InternalEdgeFilter::Defer(const TriangleView& view, const Vector3& axis, const Manifold& manifold,
                                const Manifold& onFace) {
-    float along[3], least = 0, most = 0;
-    for (int i = 0; i < 3; ++i) {
-        along[i] = Dot(axis, Vector3(view.vertices[i] - view.vertices[0]));
-        least = std::min(least, along[i]);
-        most = std::max(most, along[i]);
-    }
-    const float nearly = least + 1e-3f * (most - least);
-    int nearest[3], count = 0;
-    for (int i = 0; i < 3; ++i)
-        if (along[i] <= nearly) nearest[count++] = i;
+    const TriangleFeature feature = FeatureAlong(view.vertices, view.activeEdges, axis);
     DeferredContact deferred;
-    const auto isActive = [&](int edge) { return (view.activeEdges >> edge & 1) != 0; };
-    if (count >= 2) {
-        // Corners 0 and 1 are edge 0, 1 and 2 edge 1, 2 and 0 edge 2.
-        deferred.active = isActive(nearest[1] - nearest[0] == 1 ? nearest[0] : 2);
-    } else {
-        deferred.active = isActive(nearest[0]) || isActive((nearest[0] + 2) % 3);
-    }
+    deferred.active = feature.isActive;
     // Also at an edge that counts as flat: use all points along the face, if there are more.
     const bool isFlat = !deferred.active && -Dot(axis, view.normal) > kFlatCosine;
     const bool isAtEdge = deferred.active || (isFlat && onFace.pointCount <= manifold.pointCount);
     deferred.active |= isFlat;
     if (!deferred.active && onFace.pointCount == 0) return;
-    deferred.vertices[0] = view.vertexIds[nearest[0]];
-    deferred.vertices[1] = view.vertexIds[nearest[count >= 2 ? 1 : 0]];
+    deferred.vertices[0] = view.vertexIds[feature.corners[0]];
+    deferred.vertices[1] = view.vertexIds[feature.corners[feature.count >= 2 ? 1 : 0]];
     deferred.onFace = WithSurfaceFeatures(view, onFace);
     deferred.isOnFace = !isAtEdge;
     deferred.contact = isAtEdge ? WithSurfaceFeatures(view, manifold) : deferred.onFace;

@@ -19,7 +19,10 @@ class TriangleCore final : public ConvexShape {
 public:
     // `origin`: the origin of the new frame, in the surface's frame, m.
     TriangleCore(const TriangleView& triangle, const Vector3& origin)
-        : ConvexShape(ShapeType::Custom), normal_(triangle.normal), id_(triangle.id) {
+        : ConvexShape(ShapeType::Custom),
+          normal_(triangle.normal),
+          id_(triangle.id),
+          activeEdges_(triangle.activeEdges) {
         for (int i = 0; i < 3; ++i) {
             vertices_[i] = triangle.vertices[i] - origin;
             bounds_.Include(vertices_[i]);
@@ -34,11 +37,13 @@ public:
     const Vector3 (&Corners() const)[3] { return vertices_; }
     const Vector3& Normal() const { return normal_; }
     uint32_t Id() const { return id_; }
+    uint8_t ActiveEdges() const { return activeEdges_; }  // see TriangleView
 
 private:
     Vector3 vertices_[3];
     Vector3 normal_;
     uint32_t id_;
+    uint8_t activeEdges_;
 };
 
 }  // namespace fulcrum

@@ -1,6 +1,8 @@
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeCasts.h>
+#include <Fulcrum/Collision/NarrowPhase/TriangleSide.h>
+#include <Fulcrum/Collision/Queries/Bearings.h>
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
 #include <Fulcrum/Collision/Queries/CoreCast.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
@@ -8,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace fulcrum {
 
@@ -53,24 +57,6 @@ CoreMotion ShapeCaster::RelativeTo(const Pose& pose) const {
     return motion;
 }
 
-// Depth and normal of an overlap at the start; of a one-sided triangle towards its front.
-void ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const {
-    const RelativePose relative{motion.position.cast<float>(), motion.rotation};
-    const ConvexSeparation now =
-        MeasureConvex(piece.shape, shape_, relative, std::numeric_limits<float>::infinity(), method_);
-    Vector3 normal = now.normal, onA = now.onA;
-    hit.depth = std::max(0.0f, -now.separation);
-    if (piece.triangle && !piece.isTwoSided && Dot(normal, piece.triangle->Normal()) < 0) {
-        normal = piece.triangle->Normal();
-        const Vector3 deepest = relative.Transform(shape_.Support(InverseRotate(relative.rotation, Vector3(-normal))));
-        const float height = Dot(normal, Vector3(deepest - piece.triangle->SupportCore(normal)));
-        hit.depth = std::max(0.0f, -height);
-        onA = deepest - normal * height;
-    }
-    hit.normal = Rotate(at.rotation, normal);
-    hit.position = at.Transform(onA);
-}
-
 namespace {
 
 // Hits that overflow, of shapes of extreme sizes or distances, do not count.
@@ -78,13 +64,53 @@ bool IsWithinFloats(const ShapeHit& hit) {
     return std::fabs(LengthSquared(hit.normal) - 1) < 1e-3f && IsFinite(hit.position) && std::isfinite(hit.depth);
 }
 
+// The normal of a triangle's face that replaces that of a contact at one of its inactive edges or corners, in the
+// triangle's frame; `center`: of the other shape.
+std::optional<Vector3> FaceInsteadOfEdge(const Piece& piece, const Vector3& normal, const Position& center,
+                                         const ShapeCastSettings& settings) {
+    if (!piece.triangle || !settings.ignoreSeparating) return std::nullopt;
+    const TriangleCore& triangle = *piece.triangle;
+    Vector3 face = triangle.Normal();
+    if ((piece.isTwoSided || settings.backFaces) &&
+        Dot<double>(center - triangle.Corners()[0].cast<double>(), face.cast<double>()) < 0)
+        face = -face;
+    const bool stays = Dot(normal, face) > kFaceCosine ||
+                       FeatureAlong(triangle.Corners(), triangle.ActiveEdges(), Vector3(-normal)).isActive;
+    return stays ? std::nullopt : std::optional(face);
+}
+
 }  // namespace
+
+// Depth and normal where the shapes overlap at the start, or are up to `reach` m apart; false if they are farther. Of a
+// one-sided triangle towards its front.
+bool ShapeCaster::MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion,
+                               const ShapeCastSettings& settings, float reach, ShapeHit& hit) const {
+    const RelativePose relative{motion.position.cast<float>(), motion.rotation};
+    const ConvexSeparation now = MeasureConvex(piece.shape, shape_, relative, reach, method_);
+    if (now.isBeyond) return false;
+    Vector3 normal = now.normal, onA = now.onA;
+    hit.depth = std::max(0.0f, -now.separation);
+    std::optional<Vector3> face = FaceInsteadOfEdge(piece, normal, motion.position, settings);
+    if (piece.triangle && !piece.isTwoSided && Dot(normal, piece.triangle->Normal()) < 0)
+        face = piece.triangle->Normal();
+    if (face) {
+        normal = *face;
+        const Vector3 deepest = relative.Transform(shape_.Support(InverseRotate(relative.rotation, Vector3(-normal))));
+        const float height = Dot(normal, Vector3(deepest - piece.triangle->SupportCore(normal)));
+        hit.depth = std::max(0.0f, -height);
+        onA = deepest - normal * height;
+    }
+    hit.normal = Rotate(at.rotation, normal);
+    hit.position = at.Transform(onA);
+    return IsWithinFloats(hit);
+}
 
 // A motion along a surface is not exactly parallel to it, due to rounding: one that penetrates by less than this over
 // its whole length counts as parallel.
 bool ShapeCaster::Separates(const ShapeHit& hit) const {
     constexpr float kAlong = 1e-4f;  // of the motion
-    const Vector3 arm = (hit.position - motion_.pose.position).cast<float>();
+    const Position center = motion_.pose.position + motion_.displacement.cast<double>() * double{hit.fraction};
+    const Vector3 arm = (hit.position - center).cast<float>();
     const Vector3 motion = motion_.displacement + Cross<float>(motion_.turn, arm);
     return Dot(motion, hit.normal) >= -kAlong * Length(motion);
 }
@@ -92,6 +118,7 @@ bool ShapeCaster::Separates(const ShapeHit& hit) const {
 bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit,
                             const Vector3& turn) const {
     const Pose at = pose * piece.pose;
+    if (settings.ignoreSeparating && Continues(piece.shape, at)) return false;
     CoreMotion motion = RelativeTo(at);
     if (!turn.isZero(0)) motion.turnOfA = InverseRotate(at.rotation, turn);
     if (!IsWithinReach(motion.position)) return false;
@@ -105,8 +132,9 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
         if (!settings.measureDepth && !settings.ignoreSeparating) return true;
-        MeasureDepth(piece, at, motion, hit);
-        if (!IsWithinFloats(hit) || (settings.ignoreSeparating && Separates(hit))) return false;
+        constexpr float kAnyReach = std::numeric_limits<float>::infinity();
+        if (!MeasureDepth(piece, at, motion, settings, kAnyReach, hit)) return false;
+        if (settings.ignoreSeparating && Separates(hit)) return false;
         if (!settings.measureDepth) hit = {.fraction = hit.fraction, .subShape = hit.subShape, .isEarly = hit.isEarly};
         return true;
     }
@@ -118,7 +146,19 @@ bool ShapeCaster::CastPiece(const Piece& piece, const Pose& pose, const ShapeCas
     }
     hit.normal = Rotate(at.rotation, cast.normal);
     hit.position = at.Transform(cast.onA + cast.normal * piece.shape.ConvexRadius());
+    if (const auto face = FaceInsteadOfEdge(piece, cast.normal, motion.PositionAt(cast.fraction), settings)) {
+        hit.normal = Rotate(at.rotation, *face);
+        if (Separates(hit)) return false;
+    }
     return IsWithinFloats(hit);
+}
+
+// m, of the shape's lowest point at the start above a half space.
+double ShapeCaster::HeightAbove(const Plane& plane, const CoreMotion& motion) const {
+    const Vector3 lowest =
+        Rotate(motion.rotation, shape_.Support(InverseRotate(motion.rotation, Vector3(-plane.Normal()))));
+    return Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>())) -
+           double{plane.Offset()};
 }
 
 bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCastSettings& settings,
@@ -134,11 +174,7 @@ bool ShapeCaster::CastPlane(const Shape& shape, const Pose& pose, const ShapeCas
     hit.position = pose.Transform(cast.onA);
     hit.isEarly = cast.status == CoreCastResult::Status::Early;
     if (cast.status == CoreCastResult::Status::AtStart) {
-        const Vector3 lowest =
-            Rotate(motion.rotation, shape_.Support(InverseRotate(motion.rotation, Vector3(-plane.Normal()))));
-        const double height =
-            Dot<double>(plane.Normal().cast<double>(), Position(motion.position + lowest.cast<double>()));
-        hit.depth = std::max(0.0f, static_cast<float>(double{plane.Offset()} - height));
+        hit.depth = std::max(0.0f, static_cast<float>(-HeightAbove(plane, motion)));
         if (settings.ignoreSeparating && Separates(hit)) return false;
     }
     return IsWithinFloats(hit);
@@ -181,6 +217,14 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
 void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context,
                          HitFunction found) const {
     if (!isValid_ || !settings.IsValid() || !IsWithinReach(motion_.pose.position - pose.position)) return;
+    if (settings.ignoreSeparating && !bearings_) {
+        Bearings bearings;
+        FindBearings(other, pose, settings, bearings);
+        bearings.Merge();
+        ShapeCaster resting = *this;
+        resting.RestOn(bearings);
+        return resting.Search(other, pose, settings, context, found);
+    }
     ShapeHit hit;
     if (other.IsConvex()) {
         const Piece piece{static_cast<const ConvexShape&>(other), {}, {}};

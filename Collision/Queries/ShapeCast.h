@@ -1,6 +1,7 @@
 // Casts a convex shape that moves along a line and may rotate at a constant rate against a single shape at a pose.
 // Called by the world's queries and continuous collision, and by users who have shapes and no world. Thread-safe;
-// allocates nothing unless the depth of a degenerate overlap is measured, or with the method Libccd.
+// allocates nothing unless the depth of a degenerate overlap is measured, with the method Libccd, or when a thread
+// first casts with ignoreSeparating.
 //
 // No hit is missed, however thin or fast the shapes. Shapes that overlap at the start are hit at fraction 0, with
 // penetration depth and normal. One-sided triangles are only hit from the front: a shape that moves along their normal,
@@ -16,6 +17,8 @@
 
 namespace fulcrum {
 
+class Bearings;
+class Plane;
 class SurfaceShape;
 struct CoreMotion;
 struct Piece;
@@ -35,7 +38,10 @@ struct ShapeCastSettings {
     float separation = 0;    // m, >= 0: shapes this far apart count as touching
     float tolerance = 0;     // m, >= 0: a hit may be reported this much too late; 0: to about 1e-6 of the shapes' size
     // A shape that touches or overlaps at the start is not hit if the motion begins along its surface or out of it, as
-    // for a character that stands on a floor and walks. A motion of zero length then hits nothing at the start.
+    // for a character that stands on a floor and walks. Nor is, later, what only continues that surface: other
+    // triangles, children or bodies that lie below it, or above it by at most a millimeter or a hundredth of the moving
+    // shape's outer radius. Hits at inactive edges (SurfaceShape.h) have the normal of the face. A motion of zero
+    // length hits nothing at the start.
     bool ignoreSeparating = false;
     bool measureDepth = true;  // otherwise overlaps at the start have depth, normal and position zero
 
@@ -71,6 +77,15 @@ public:
     template <class Visitor>
     void Visit(const Shape& other, const Pose& pose, const ShapeCastSettings& settings, Visitor&& visit) const;
 
+    // Casts with ignoreSeparating against several shapes: adds the planes on which the moving shape rests at the start
+    // where it touches one of them; RestOn tells casts of all of them (not owned). Without, each cast has those of its
+    // own shape.
+    void FindBearings(const Shape& other, const Pose& pose, const ShapeCastSettings& settings,
+                      Bearings& bearings) const;
+    void RestOn(const Bearings& bearings) { bearings_ = &bearings; }
+    // m: up to this distance a shape counts as touching there.
+    float ReachOfBearings(const ShapeCastSettings& settings) const;
+
 private:
     // Visits a hit and may lower settings.maxFraction; false ends the search.
     using HitFunction = bool (*)(void* context, const ShapeHit& hit, ShapeCastSettings& settings);
@@ -84,13 +99,19 @@ private:
     bool CastPlane(const Shape& plane, const Pose& pose, const ShapeCastSettings& settings, ShapeHit& hit) const;
     // Whether the motion at its start leads out of the overlapping shape, or along its surface.
     bool Separates(const ShapeHit& hit) const;
-    void MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, ShapeHit& hit) const;
+    // Whether a piece is hidden by a bearing.
+    bool Continues(const ConvexShape& piece, const Pose& at) const;
+    void AddBearing(const ShapeHit& touched, Bearings& bearings) const;
+    bool MeasureDepth(const Piece& piece, const Pose& at, const CoreMotion& motion, const ShapeCastSettings& settings,
+                      float reach, ShapeHit& hit) const;
+    double HeightAbove(const Plane& plane, const CoreMotion& motion) const;
     CoreMotion RelativeTo(const Pose& pose) const;
 
     const ConvexShape& shape_;
     ShapeMotion motion_;
     Bounds bounds_;
     NarrowPhaseMethod method_;
+    const Bearings* bearings_ = nullptr;
     bool isValid_ = false;
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+#include <Fulcrum/Math/List.h>
 
 namespace fulcrum {
 
@@ -16,12 +17,12 @@ inline constexpr uint8_t kHoleCell = 255;
 struct HeightFieldSettings {
     uint32_t sampleCountX = 0;           // >= 2; their product at most 2^30
     uint32_t sampleCountZ = 0;           // >= 2
-    std::span<const float> heights{};    // m; sample (x, z) is heights[z * sampleCountX + x]
+    List<float> heights{};               // m; sample (x, z) is heights[z * sampleCountX + x]
     float cellSizeX = 1, cellSizeZ = 1;  // m, > 0
     Vector3 origin = Vector3::Zero();    // m: where sample (0, 0) lies at height 0
     // One a cell, cell (x, z) at [z * (sampleCountX - 1) + x]: an index into `materials`, or kHoleCell. None: all 0.
-    std::span<const uint8_t> cells{};
-    std::span<const SurfaceMaterial> materials{};  // the palette, at most 255; none: the body's own material everywhere
+    List<uint8_t> cells{};
+    List<SurfaceMaterial> materials{};  // the palette, at most 255; none: the body's own material everywhere
     HeightPrecision precision = HeightPrecision::Float;
     // The limits of Steps16, in m; equal: those of `heights`. Float ignores them.
     float lowestHeight = 0, highestHeight = 0;

@@ -8,7 +8,7 @@
 #include <Fulcrum/Collision/Shapes/CustomConvex.h>
 
 #include <span>
-#include <string_view>
+#include <string>
 #include <vector>
 
 namespace fulcrum {
@@ -17,7 +17,7 @@ inline constexpr uint32_t kShapeFileVersion = 1;
 
 // Serialization of a class that a user derived from CustomConvex.
 struct CustomShapeFormat {
-    std::string_view name;  // 1 to 255 bytes; must never change, since files contain it
+    std::string name;  // 1 to 255 bytes; must never change, since files contain it
     // Writes the data for `read`; returns false if the shape is of another class.
     bool (*write)(const CustomConvex& shape, std::vector<uint8_t>& bytes);
     // Creates the shape from the data of `write`. The data may be invalid, since files may be damaged.

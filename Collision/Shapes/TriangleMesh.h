@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/MeshRepair.h>
 #include <Fulcrum/Collision/Shapes/ParallelLoop.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
+#include <Fulcrum/Math/List.h>
 #include <Fulcrum/Math/Wide.h>
 
 namespace fulcrum {
@@ -12,10 +13,10 @@ namespace fulcrum {
 struct MeshTree;
 
 struct TriangleMeshSettings {
-    std::span<const Vector3> vertices{};           // m
-    std::span<const uint32_t> indices{};           // three per triangle, counter-clockwise seen from the front
-    std::span<const uint8_t> triangleMaterials{};  // one per triangle, or empty: all 0
-    std::span<const SurfaceMaterial> materials{};  // the palette, at most 255; none: the body's own material everywhere
+    List<Vector3> vertices{};           // m
+    List<uint32_t> indices{};           // three per triangle, counter-clockwise seen from the front
+    List<uint8_t> triangleMaterials{};  // one per triangle, or empty: all 0
+    List<SurfaceMaterial> materials{};  // the palette, at most 255; none: the body's own material everywhere
     bool isTwoSided = false;
     float activeEdgeCosine = 0.996f;   // -1 .. 1: edges whose normals have a larger cosine (5 degrees) count as flat
     float weldDistance = 1e-7f;        // m, >= 0: vertices this close are merged

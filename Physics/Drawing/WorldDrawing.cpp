@@ -15,7 +15,7 @@ public:
         : system_(system), bodies_(system.Bodies()), target_(target), settings_(settings) {}
 
     void DrawBody(BodyId id) {
-        if (settings_.accepts && !(*settings_.accepts)(id)) return;
+        if (settings_.accepts && !settings_.accepts(id)) return;
         const Pose pose = bodies_.GetPose(id);
         const DrawingColor color = ColorOf(bodies_, id, settings_.colors);
         if (settings_.triangles || settings_.wireframe)
@@ -34,7 +34,7 @@ public:
     }
 
     void DrawContact(const ContactView& contact) {
-        if (settings_.accepts && !(*settings_.accepts)(contact.bodyA) && !(*settings_.accepts)(contact.bodyB)) return;
+        if (settings_.accepts && !settings_.accepts(contact.bodyA) && !settings_.accepts(contact.bodyB)) return;
         for (const ContactView::Point& point : contact.points) {
             const float length = settings_.axisLength * 0.2f + settings_.contactScale * point.impulse;
             target_.Line(point.position, point.position + (contact.normal * length).cast<double>(),
@@ -46,7 +46,7 @@ public:
         const JointInterface& joints = system_.Joints();
         if (!joints.IsEnabled(id)) return;
         const BodyId sides[2] = {joints.GetBodyA(id), joints.GetBodyB(id)};
-        if (settings_.accepts && !(*settings_.accepts)(sides[0]) && !(*settings_.accepts)(sides[1])) return;
+        if (settings_.accepts && !settings_.accepts(sides[0]) && !settings_.accepts(sides[1])) return;
         const Pose frames[2] = {joints.GetFrameA(id), joints.GetFrameB(id)};
         for (int side = 0; side < 2; ++side) {
             DrawFrame(frames[side], settings_.colors.joint);

@@ -50,8 +50,8 @@ struct DrawingSettings {
     int detail = 2;            // of round shapes, see ShapeTriangles.h
     float planeExtent = 100;   // m
     DrawingColors colors{};
-    // Bodies to draw; null: all.
-    const FunctionRef<bool(BodyId)>* accepts = nullptr;
+    // Bodies to draw; none: all.
+    Function<bool(BodyId)> accepts{};
 };
 
 void Draw(const PhysicsSystem& system, DrawingTarget& target, const DrawingSettings& settings = {});

@@ -83,8 +83,8 @@ private:
         const BodyId id = world_.bodies.IdOf(body);
         for (const BodyId& ignored : filter_.ignore)
             if (ignored == id) return false;
-        if (filter_.accepts && !(*filter_.accepts)(id)) return false;
-        return !filter_.acceptsChild || (*filter_.acceptsChild)(id, ChildOf(collider));
+        if (filter_.accepts && !filter_.accepts(id)) return false;
+        return !filter_.acceptsChild || filter_.acceptsChild(id, ChildOf(collider));
     }
 
     const WorldState& world_;

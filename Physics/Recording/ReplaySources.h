@@ -6,17 +6,15 @@
 #include <Fulcrum/Physics/Snapshot.h>
 
 #include <memory>
-#include <span>
 
 namespace fulcrum {
 
-// All spans must live as long as the replay.
 struct ReplaySources {
-    std::span<const ShapePtr> shapes{};  // custom ones that no format below writes; found by ContentHash
-    std::span<const CustomShapeFormat> customShapes{};
+    List<ShapePtr> shapes{};  // custom ones that no format below writes; found by ContentHash
+    List<CustomShapeFormat> customShapes{};
     // Other than GroupFilterTable; found by GroupFilter::ContentHash.
-    std::span<const std::shared_ptr<const GroupFilter>> groupFilters{};
-    std::span<const ContactListener* const> contactListeners{};  // in the order in which they were first set
+    List<std::shared_ptr<const GroupFilter>> groupFilters{};
+    List<const ContactListener*> contactListeners{};  // in the order in which they were first set
     // The type of a user-defined joint, by the id that it had when it was recorded.
     Function<std::unique_ptr<JointType>(JointId joint)> makeJoint{};
 };

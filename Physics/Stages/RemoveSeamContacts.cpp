@@ -2,6 +2,7 @@
 // with it, must not feel the seam. The narrow phase only sees pairs: to it the next body has an edge, or a side hidden
 // by the first one, and both give sideways normals. Such a contact loses its points if its shape lies entirely below
 // the plane of another contact on which the body rests, so that there is nothing to collide with.
+#include <Fulcrum/Collision/NarrowPhase/ContactTolerances.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
@@ -14,8 +15,6 @@ namespace {
 
 using Kind = ConstraintColoring::Kind;
 
-constexpr float kFlush = 1e-3f;  // m: height above the plane that counts as flush, but at most this fraction of a body:
-constexpr float kFlushFraction = 0.01f;
 constexpr float kSameDirection = 0.9998f;  // 1 degree
 
 // A contact in the center frame of its body A.
@@ -99,7 +98,7 @@ private:
         const Pair& first = pairs_.pairs[bearing.pair];
         const Pair& second = pairs_.pairs[other.pair];
         if (first.colliderA != second.colliderA || first.colliderB == second.colliderB) return false;
-        const float flush = std::min(kFlush, kFlushFraction * ShapesOf(colliders_, first).a.OuterRadius());
+        const float flush = FlushHeight(ShapesOf(colliders_, first).a.OuterRadius());
         return bearing.separation < flush && Dot(bearing.normal, other.normal) < kSameDirection &&
                HeightOf(other.pair, bearing.deepest, Vector3(-bearing.normal)) < flush;
     }

@@ -16,7 +16,7 @@ void Probe(SceneWorld& world, const ConvexShape& shape, const Pose& pose) {
     std::vector<OverlapHit> hits;
     const PlacedShape probe{&shape, pose};
     auto accepts = [&](BodyId id) { return world.Bodies().GetMotionType(id) != MotionType::Static; };
-    const QueryFilter movers{.accepts = FunctionRef<bool(BodyId)>(accepts)};
+    const QueryFilter movers{.accepts = accepts};
     world.Queries().FindOverlaps(probe, hits, movers);
     world.Draw().Outline(shape, pose, hits.empty() ? Ink::Miss : Ink::Hit);
     for (const OverlapHit& hit : hits) {

@@ -53,7 +53,7 @@ void DrawPiercing(SceneWorld& world) {
 void DrawCurtain(SceneWorld& world) {
     const double z = 0.8 * double{kQueryGround} * Sin(0.5 * world.Time());
     auto accepts = [&](BodyId id) { return world.Bodies().GetMotionType(id) != MotionType::Static; };
-    const QueryFilter movers{.accepts = FunctionRef<bool(BodyId)>(accepts)};
+    const QueryFilter movers{.accepts = accepts};
     for (int i = 0; i < kColumns; ++i) {
         const Ray ray{{(i - 0.5 * (kColumns - 1)) * 1.2, 4, z}, Vector3(0, -4, 0)};
         const bool isHit = world.Queries().IsHit(ray, {}, movers);
