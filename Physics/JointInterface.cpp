@@ -330,11 +330,10 @@ double JointInterface::GetCoordinate(JointId id, JointAxis axis) const {
                : 0.0;
 }
 
-JointError JointInterface::GetError(JointId id) const {
+namespace {
+
+JointError ErrorOfLocks(const JointLocks& locks, const JointPose& pose) {
     JointError error;
-    if (!Exists(id)) return error;
-    const JointPose pose = PoseOf(world_, id.index);
-    const JointLocks locks = world_.joints.types[id.index]->Locks();
     const auto axisOf = [](const Quaternion& frame, int k) { return Rotate(frame, Vector3(Vector3::Unit(k))); };
     if (locks.linear == LinearLock::Point) error.distance = Length(pose.offset);
     if (locks.linear == LinearLock::Line) {
@@ -349,6 +348,31 @@ JointError JointInterface::GetError(JointId id) const {
         error.angle = std::sqrt(hinge.x() * hinge.x() + hinge.y() * hinge.y());
     }
     return error;
+}
+
+JointError ErrorOfRows(const JointType& type, JointPose pose) {
+    if (type.MaxRows() == 0) return {};
+    pose.dt = pose.substepDt = 1.0f / 60;  // of any step: it only adds limits that are not exceeded
+    JointRowList list;
+    type.RowsAt(pose, list);
+    RowErrors errors;
+    for (uint32_t i = 0; i < list.count; ++i) {
+        const JointRow& row = list.rows[i];
+        if (!std::isfinite(row.error) || IsAtForceLimit(row.error, type.forces[row.slot], row.minForce, row.maxForce))
+            continue;
+        errors.Add(ErrorOf(row), IsAngle(row), row.isLock);
+    }
+    return errors.Largest();
+}
+
+}  // namespace
+
+JointError JointInterface::GetError(JointId id) const {
+    if (!Exists(id)) return {};
+    const JointPose pose = PoseOf(world_, id.index);
+    const JointType& type = *world_.joints.types[id.index];
+    const JointError locks = ErrorOfLocks(type.Locks(), pose), rows = ErrorOfRows(type, pose);
+    return {std::max(locks.distance, rows.distance), std::max(locks.angle, rows.angle)};
 }
 
 namespace {

@@ -3,6 +3,7 @@
 // wakes them.
 #pragma once
 
+#include <Fulcrum/Constraints/Joints/RowErrors.h>
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Math/Result.h>
 #include <Fulcrum/Physics/Joints/JointKinds.h>
@@ -12,12 +13,6 @@
 namespace fulcrum {
 
 struct WorldState;
-
-// Current position error of a joint's locks.
-struct JointError {
-    float distance = 0;  // m, between the anchors, along the locked directions
-    float angle = 0;     // rad, about the locked axes
-};
 
 // Average force of the rows along one axis over the last step, N or N m on body B; 0 if there was no row.
 struct JointAxisForces {
@@ -75,6 +70,7 @@ public:
     // Getters return zeros for an unknown id.
     const AxisControl* GetControl(JointId id, JointAxis axis) const;  // null if it has no such axis
     double GetCoordinate(JointId id, JointAxis axis) const;           // m or rad, see the joint's settings
+    // The largest of its locks, limits, lengths, ratios and hard motors at the bodies' present poses.
     JointError GetError(JointId id) const;
     // Average force and torque of the joint (locks and rows) on body B over the last step: N, and N m about B's anchor,
     // world axes. For sleeping joints those of the last active step; zero if disabled.

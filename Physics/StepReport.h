@@ -51,8 +51,8 @@ struct StepReport {
     uint32_t contacts = 0, contactPoints = 0;  // manifolds with at least one point, awake ones
     uint32_t keptManifolds = 0;                // of these, reused from the last step
     uint32_t joints = 0;                       // awake ones
-    float largestJointError = 0;  // m, >= 0: between the anchors, along locked directions, at the start of the step
-    float largestJointAngle = 0;  // rad, >= 0
+    // m and rad, >= 0: the largest errors of joints, as JointInterface::GetError has them, at the start of the step.
+    float largestJointError = 0, largestJointAngle = 0;
     JointId worstJoint, mostTurnedJoint;
     uint32_t colors = 0, overflowConstraints = 0;  // overflow: without a color, solved serially
     uint32_t islands = 0;                          // awake ones with constraints

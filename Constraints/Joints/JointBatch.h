@@ -75,6 +75,9 @@ FULCRUM_CHECK_PLACE(JointRecord, lockTorque, JointRecord::kLocks, JointRecord::k
 FULCRUM_CHECK_PLACE(JointRecord, totalForce, JointRecord::kTotal, JointRecord::kForce);
 FULCRUM_CHECK_PLACE(JointRecord, totalTorque, JointRecord::kTotal, JointRecord::kTorque);
 
+// What the C of a row is where it is not as it should be: see RowErrors.h.
+enum class RowHold : uint8_t { Nothing, Distance, Angle };
+
 // One row of each of N joints; lanes without a row have a zero Jacobian and are inactive.
 template <int N>
 struct JointRows {
@@ -107,6 +110,7 @@ struct JointRows {
     Real freeMass;
     Real pulled;      // N s or N m s: impulse applied to pseudo-velocities, see PullJoints
     uint8_t slot[N];  // 0xFF: no row
+    RowHold hold[N];
 };
 
 template <int N>
@@ -199,7 +203,7 @@ struct JointSolveSettings {
     bool firstPass;   // first relax iteration of a substep, or first iteration of PullJoints
 };
 
-// Results of Prepare.
+// Results of Prepare, and the errors of rows, which Store adds.
 struct JointFindings {
     float linearError = 0, angularError = 0;  // m, rad: largest joint errors
     uint32_t linearJoint = ~0u, angularJoint = ~0u;
@@ -247,5 +251,10 @@ void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSetting
 template <int N>
 void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* const* types, const BodyState* states,
                  float dt, float impulseScale);
+
+// After StoreJoints: notes the errors that the rows had at the start of the step, if the forces of the step were below
+// their limits. substepDt: of the batch, s.
+template <int N>
+void NoteRowErrors(const JointBatch<N>& batch, const JointType* const* types, float substepDt, JointFindings& findings);
 
 }  // namespace fulcrum

@@ -38,7 +38,8 @@ struct JointRow {
     enum class Pivot : uint8_t { None, Across, Between };
     Pivot pivot = Pivot::None;
     Vector3 ofA = Vector3::Zero(), ofB = Vector3::Zero();  // unit, world: those directions
-    bool isLock = false;  // Equal rows, the first of the list, that are solved as one block
+    bool isLock = false;     // Equal rows, the first of the list, that are solved as one block
+    bool inRadians = false;  // C is in rad, although the row moves anchors; else as J says
     float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
     SpringSettings spring;
 };

@@ -138,11 +138,23 @@ public:
     // Shows the visitor all other data of the type, always in the same order: settings of its creation and values
     // measured by Start, but not what Control returns. Snapshots use it to compare and to recreate joints.
     virtual void VisitSettings(const SettingVisitor& visit) { (void)visit; }
+    // The rows that CollectRows would add, with the type as it is: their errors are read between steps. By default
+    // those of CollectRows, after which State has its values again; types that have State override it, since reads may
+    // be concurrent.
+    virtual void RowsAt(const JointPose& pose, JointRowList& rows) const;
 
     // By slot, 0 if there was no row: impulses of the last substep, N s or N m s, and the average forces of the step, N
     // or N m. Written by the Store stage, as are the rotations of the last step.
     std::array<float, JointRowList::kMaxRows> impulses{}, forces{};
     Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();
+
+protected:
+    // RowsAt of a type that may be copied.
+    template <class Type>
+    static void RowsOfCopy(const Type& type, const JointPose& pose, JointRowList& rows) {
+        Type copy(type);
+        copy.CollectRows(pose, rows);
+    }
 };
 
 inline double JointType::Coordinate(JointAxis axis, const JointPose& pose) const {

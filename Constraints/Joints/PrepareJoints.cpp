@@ -1,8 +1,10 @@
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 #include <Fulcrum/Constraints/Joints/JointStrain.h>
+#include <Fulcrum/Constraints/Joints/RowErrors.h>
 #include <Fulcrum/Constraints/Parts/SpringSoftness.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace fulcrum {
@@ -61,6 +63,7 @@ void ClearLane(JointRows<N>& rows, int lane) {
                        &rows.isLock})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
+    rows.hold[lane] = RowHold::Nothing;
 }
 
 // Sets everything that does not depend on the mass, for a row whose error is corrected at the locks' rate.
@@ -110,6 +113,7 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     SetLane(rows.ofA, lane, row.ofA);
     SetLane(rows.ofB, lane, row.ofB);
     rows.about.Set(lane, row.about ? 1.0f : 0.0f);
+    if (hard) rows.hold[lane] = IsAngle(row) ? RowHold::Angle : RowHold::Distance;
     rows.isLock.Set(lane, row.isLock ? 1.0f : 0.0f);
     if (std::isfinite(previousImpulse)) impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
@@ -526,11 +530,45 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
     }
 }
 
+template <int N>
+void NoteRowErrors(const JointBatch<N>& batch, const JointType* const* types, float substepDt,
+                   JointFindings& findings) {
+    using Real = Wide<N>;
+    uint32_t lanes = 0;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& rows = batch.rows[i];
+        lanes |= ((rows.startError <= rows.openAbove) & (Abs(rows.startError) > Real(0.0f))).ToBits();
+    }
+    const auto note = [](uint32_t joint, float error, float& largest, uint32_t& which) {
+        if (!(error > 0.0f) || error < largest || (error == largest && joint >= which)) return;
+        largest = error;
+        which = joint;
+    };
+    const float perSubstep = 1.0f / substepDt;
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        const uint32_t joint = batch.joint[lane];
+        RowErrors errors;
+        for (uint32_t i = 0; i < batch.rowCount; ++i) {
+            const JointRows<N>& rows = batch.rows[i];
+            const float error = rows.startError[lane];
+            if (rows.hold[lane] == RowHold::Nothing || error > rows.openAbove[lane]) continue;
+            const float force = types[joint]->forces[rows.slot[lane]];
+            if (!IsAtForceLimit(error, force, rows.lowest[lane] * perSubstep, rows.highest[lane] * perSubstep))
+                errors.Add(std::fabs(error), rows.hold[lane] == RowHold::Angle, rows.isLock[lane] > 0.5f);
+        }
+        const JointError largest = errors.Largest();
+        note(joint, largest.distance, findings.linearError, findings.linearJoint);
+        note(joint, largest.angle, findings.angularError, findings.angularJoint);
+    }
+}
+
 #define FULCRUM_INSTANTIATE(lanes)                                                                                   \
     template void PrepareJoints(JointBatch<lanes>&, const JointRecord*, JointType* const*, const ConstSolverBodies&, \
                                 const JointSolveSettings&, JointFindings&);                                          \
     template void StoreJoints(const JointBatch<lanes>&, JointRecord*, JointType* const*, const BodyState*, float,    \
-                              float);
+                              float);                                                                                \
+    template void NoteRowErrors(const JointBatch<lanes>&, const JointType* const*, float, JointFindings&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

@@ -30,6 +30,7 @@ public:
     uint32_t MaxRows() const override { return 1; }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    void RowsAt(const JointPose& pose, JointRowList& rows) const override { RowsOfCopy(*this, pose, rows); }
     std::span<double> State() override { return state_; }
     void VisitSettings(const SettingVisitor& visit) override {
         visit(ratio_);

@@ -29,6 +29,7 @@ public:
     uint32_t MaxRows() const override { return MaxControlRows(control_); }
     void Start(const JointPose& pose) override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    void RowsAt(const JointPose& pose, JointRowList& rows) const override { RowsOfCopy(*this, pose, rows); }
     AxisControl* Control(JointAxis axis) override { return axis == JointAxis::AngularX ? &control_ : nullptr; }
     double Coordinate(JointAxis axis, const JointPose& pose) const override;
     std::span<double> State() override { return turns_.numbers; }

@@ -27,6 +27,7 @@ void RackAndPinionJoint::CollectRows(const JointPose& pose, JointRowList& rows) 
     const double moved = Dot(pose.offset, way) - state_[BearingAngle::kNumbers];
     JointRow& row = rows.Add(0, JointRow::Kind::Equal);
     row.jacobian = RackAndPinionJacobian<float>({pose.armA, pose.armB - pose.offset, axis, way, ratio_});
+    row.inRadians = true;
     row.error = static_cast<float>(angle - static_cast<double>(ratio_) * moved);
 }
 

@@ -40,6 +40,7 @@ public:
     JointLocks Locks() const override { return {linearLock_, angular_.Lock(), line_, angular_.FreeAxis()}; }
     uint32_t MaxRows() const override;
     void CollectRows(const JointPose& pose, JointRowList& rows) override;
+    void RowsAt(const JointPose& pose, JointRowList& rows) const override { RowsOfCopy(*this, pose, rows); }
     AxisControl* Control(JointAxis axis) override {
         return IsAngular(axis) ? AngularJointType::Control(axis) : &linear_[static_cast<size_t>(axis)];
     }

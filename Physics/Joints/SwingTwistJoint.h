@@ -32,6 +32,7 @@ public:
     void CollectRows(const JointPose& pose, JointRowList& rows) override {
         angular_.CollectRows(pose, firstAngularSlot_, rows);
     }
+    void RowsAt(const JointPose& pose, JointRowList& rows) const override { RowsOfCopy(*this, pose, rows); }
 };
 
 }  // namespace fulcrum

@@ -112,23 +112,6 @@ void FindDeepest(const BodyStore& bodies, const PairStore& pairs, std::span<cons
     report.deepestB = bodies.IdOf(pairs.pairs[pair].bodyB);
 }
 
-void FindWorstJoints(const JointStore& joints, std::span<const WorkerFindings> workers, StepReport& report) {
-    JointFindings worst;
-    const auto note = [](float error, uint32_t joint, float& largest, uint32_t& which) {
-        if (joint == ~0u || error < largest || (error == largest && joint >= which)) return;
-        largest = error;
-        which = joint;
-    };
-    for (const WorkerFindings& findings : workers) {
-        note(findings.joints.linearError, findings.joints.linearJoint, worst.linearError, worst.linearJoint);
-        note(findings.joints.angularError, findings.joints.angularJoint, worst.angularError, worst.angularJoint);
-    }
-    report.largestJointError = worst.linearError;
-    report.largestJointAngle = worst.angularError;
-    if (worst.linearJoint != ~0u) report.worstJoint = joints.IdOf(worst.linearJoint);
-    if (worst.angularJoint != ~0u) report.mostTurnedJoint = joints.IdOf(worst.angularJoint);
-}
-
 class RowFiller {
 public:
     RowFiller(const StepContext& step, const BodyStore& bodies, const CrowdState& crowd, const Effort& effort,
@@ -237,7 +220,6 @@ void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintC
     fillerOf(layout.groups.front()).FillOverflow(workers.findings.front());
 
     FindDeepest(bodies, pairs, workers.findings, report);
-    FindWorstJoints(joints, workers.findings, report);
     report.colors = layout.colorCount;
     report.overflowConstraints = static_cast<uint32_t>(layout.OverflowCount());
 }

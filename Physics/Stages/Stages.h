@@ -71,9 +71,10 @@ void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& p
            const StepWorkers& workers);
 
 // The Store stage consists of the following three and SettleStopped.
-// Writes the batches' impulses to the records of contacts and joints, and updates the load levels.
+// Writes the batches' impulses to the records of contacts and joints, updates the load levels, and reports the largest
+// errors of joints.
 void StoreImpulses(const StepContext& step, const BodyStore& bodies, const SolverLayout& layout, PairStore& pairs,
-                   JointStore& joints, const StepWorkers& workers);
+                   JointStore& joints, const StepWorkers& workers, StepReport& report);
 // Applies displacements to the poses, moves bodies without contacts and joints, updates sleep timers. Records start
 // poses if SweepStore is kept. Returns how many bodies have been slow for long enough to sleep.
 uint32_t MoveBodies(const StepContext& step, const ColliderStore& colliders, const JointStore& joints,

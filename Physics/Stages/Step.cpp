@@ -85,7 +85,7 @@ constexpr Stage kStages[] = {
      }},
     {"Store",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
-         StoreImpulses(step, world.bodies, state.solver, world.pairs, world.joints, workers);
+         StoreImpulses(step, world.bodies, state.solver, world.pairs, world.joints, workers, state.report);
          const bool sweeps = world.bodies.continuousCount > 0;
          if (sweeps) world.seenPoses.Note(world.bodies, workers.jobs);
          world.lock.KeepQueriesOut();

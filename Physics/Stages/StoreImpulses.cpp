@@ -20,7 +20,7 @@ struct Records {
 
 // Scales for storing the batches of a group.
 struct StoreScale {
-    float dt;               // s, of the step
+    float dt, substepDt;    // s, of the step and of the batch's substeps
     float impulseScale;     // see Effort
     const SinkScale* sink;  // for contacts; null if load levels are off
     const GapScale* gap;    // for joints; null if load levels are off
@@ -45,6 +45,7 @@ template <int N>
 void StoreBatch(const Records& to, const JointBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
     StoreJoints(batch, to.joints.records.data(), to.joints.types.data(), to.bodies.states.data(), scale.dt,
                 scale.impulseScale);
+    NoteRowErrors(batch, to.joints.types.data(), scale.substepDt, findings.joints);
     if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.bodies, to.joints);
     findings.strainsBegan |= NoteStrained(batch, to.joints);
 }
@@ -63,6 +64,23 @@ void StoreAll(const Records& to, const Array<Batch>& batches, uint32_t begin, ui
     });
 }
 
+void FindWorstJoints(const JointStore& joints, std::span<const WorkerFindings> workers, StepReport& report) {
+    JointFindings worst;
+    const auto note = [](float error, uint32_t joint, float& largest, uint32_t& which) {
+        if (joint == ~0u || error < largest || (error == largest && joint >= which)) return;
+        largest = error;
+        which = joint;
+    };
+    for (const WorkerFindings& findings : workers) {
+        note(findings.joints.linearError, findings.joints.linearJoint, worst.linearError, worst.linearJoint);
+        note(findings.joints.angularError, findings.joints.angularJoint, worst.angularError, worst.angularJoint);
+    }
+    report.largestJointError = worst.linearError;
+    report.largestJointAngle = worst.angularError;
+    if (worst.linearJoint != ~0u) report.worstJoint = joints.IdOf(worst.linearJoint);
+    if (worst.angularJoint != ~0u) report.mostTurnedJoint = joints.IdOf(worst.angularJoint);
+}
+
 // Period in steps in which load levels may decrease, see StepsFor.
 constexpr uint32_t kStepsToForget = 16;
 
@@ -70,7 +88,7 @@ constexpr uint32_t kStepsToForget = 16;
 
 // Batches of groups are contiguous: consecutive groups without an effort of their own are stored together.
 void StoreImpulses(const StepContext& step, const BodyStore& bodies, const SolverLayout& layout, PairStore& pairs,
-                   JointStore& joints, const StepWorkers& workers) {
+                   JointStore& joints, const StepWorkers& workers, StepReport& report) {
     const SystemSettings& settings = step.settings;
     const Records to{bodies, pairs, joints};
     const bool notesSinks = AdaptsToLoads(settings, bodies), notesGaps = AdaptsToGaps(settings, joints);
@@ -108,7 +126,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
     };
     const SinkScale usualSink = sinkScaleOf(1, 1, kUsualStiffness);
     const GapScale usualGap = gapScaleOf(1, kUsualStiffness);
-    const StoreScale usual{step.dt, 1, notesSinks ? &usualSink : nullptr, notesGaps ? &usualGap : nullptr};
+    const StoreScale usual{step.dt, step.substepDt, 1, notesSinks ? &usualSink : nullptr,
+                           notesGaps ? &usualGap : nullptr};
     for (const SolverGroup& group : layout.groups) {
         const bool isFirst = &group == &layout.groups.front();
         if (!group.isLarge && !group.effort.IsAny()) continue;
@@ -116,8 +135,8 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
         const SinkScale sink = sinkScaleOf(impulseScale, SpringsOf(group, impulseScale), group.stiffness);
         const GapScale gap = gapScaleOf(impulseScale, group.stiffness);
         const bool isNoted = notesLarge || !group.isLarge;
-        const StoreScale scale{step.dt, impulseScale, isNoted && notesSinks ? &sink : nullptr,
-                               isNoted && notesGaps ? &gap : nullptr};
+        const StoreScale scale{step.dt, step.substepDt * impulseScale, impulseScale,
+                               isNoted && notesSinks ? &sink : nullptr, isNoted && notesGaps ? &gap : nullptr};
         if (isFirst)
             ForEachOverflowList(layout, [&](const auto& batches) {
                 StoreAll(to, batches, 0, static_cast<uint32_t>(batches.size()), scale, workers);
@@ -128,6 +147,7 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
         storeTo([&](const auto&, BatchKind kind) { return last.of[kind].end; }, scale);
     }
     storeTo([](const auto& list, BatchKind) { return list.count; }, usual);
+    FindWorstJoints(joints, workers.findings, report);
     for (WorkerFindings& findings : workers.findings) {
         joints.strainVersion += findings.strainsBegan;
         pairs.loadVersion += findings.loadsChanged || findings.strainsBegan;

@@ -47,16 +47,6 @@ RecordedJointState StateOf(const JointInterface& joints, JointId id, uint32_t in
     return state;
 }
 
-// Of what it locks; of a rod or rope that is not springy how far it is out of its range.
-JointError ErrorOf(const JointInterface& joints, JointId id, const RecordedJoint& joint, const RecordedRange& length) {
-    JointError error = joints.GetError(id);
-    if (joint.isHardLength) {
-        const auto now = static_cast<float>(joints.GetCoordinate(id, JointAxis::LinearX));
-        error.distance = std::max({0.0f, length.min - now, now - length.max});
-    }
-    return error;
-}
-
 }  // namespace
 
 RecordedFrameJoints JointRecorder::Collect(std::vector<RecordedJoint>& joints) {
@@ -71,7 +61,7 @@ RecordedFrameJoints JointRecorder::Collect(std::vector<RecordedJoint>& joints) {
         }
         states_.push_back(StateOf(source, ids_[i], i, joints[i]));
         if (!states_.back().enabled) continue;
-        const JointError error = ErrorOf(source, ids_[i], joints[i], states_.back().limits[0]);
+        const JointError error = source.GetError(ids_[i]);
         if (error.distance > errors.distance) {
             errors.distance = error.distance;
             errors.distanceJoint = i;

@@ -250,6 +250,7 @@ export interface StepReport {
   largestPenetration: number;
   deepestA?: BodyId;
   deepestB?: BodyId;
+  /** m and rad: the largest errors of what joints hold: locks, lengths, limits, ratios, hard motors. */
   largestJointError: number;
   largestJointAngle: number;
   frozenBodies: number;
