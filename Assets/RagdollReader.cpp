@@ -1,17 +1,18 @@
 // Reading of RagdollJson.h.
 #include <Fulcrum/Assets/RagdollJson.h>
 
-#include <Fulcrum/Assets/Json/JsonDepth.h>
-#include <Fulcrum/Assets/Json/JsonReader.h>
+#include <Fulcrum/Assets/Json/RagdollParts.h>
+#include <Fulcrum/Assets/Json/ShapeJson.h>
+#include <Fulcrum/Physics/Files/ErrorBoundary.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 namespace fulcrum {
 
-Result<RagdollSettings> RagdollFromJson(const Json& document) {
-    JsonDocument shared;
+namespace {
+
+Result<RagdollSettings> ReadParts(const Json& document, JsonDocument& shared) {
     MaybeError& error = shared.error;
     RagdollSettings settings;
     JsonReader root(document, "", shared);
@@ -24,6 +25,7 @@ Result<RagdollSettings> RagdollFromJson(const Json& document) {
         JsonReader fields((*parts)[i], "parts[" + std::to_string(i) + "]", shared);
         fields.Field("name", part.name);
         fields.Field("body", part.body);
+        TakeChildren(part.body.shape.get(), fields.PathOf("body.shape"), shared);
         if (const Json* parent = fields.Find("parent")) {
             std::string name;
             fields.Read(*parent, fields.PathOf("parent"), name);
@@ -43,19 +45,39 @@ Result<RagdollSettings> RagdollFromJson(const Json& document) {
     return settings;
 }
 
-Result<RagdollSettings> ReadRagdoll(const std::string& file) {
-    std::ifstream stream(file);
-    if (!stream) return WrongAt(file, "it cannot be opened");
-    const std::string text((std::istreambuf_iterator<char>(stream)), {});
-    if (const MaybeError error = CheckDepthOfJson(text)) return WrongAt(file, error->message);
-    Result<RagdollSettings> settings = Error{ErrorCode::Unsupported, ""};
-    try {
-        settings = RagdollFromJson(Json::parse(text));
-    } catch (const Json::exception& error) {
-        return WrongAt(file, error.what());
-    }
-    if (!settings) return Error{settings.GetError().code, file + ": " + settings.GetError().message};
+}  // namespace
+
+Result<RagdollSettings> ReadRagdollParts(const Json& node, const std::filesystem::path& folder, JsonBudget& budget) {
+    JsonDocument document;
+    document.folder = folder;
+    document.budget = budget;
+    Result<RagdollSettings> settings = WithErrors("", [&] { return ReadParts(node, document); });
+    budget = document.budget;
     return settings;
+}
+
+Result<RagdollSettings> ReadRagdollFile(const std::filesystem::path& file, JsonBudget& budget) {
+    return WithErrors(file.string(), [&]() -> Result<RagdollSettings> {
+        const Result<std::string> text = ReadWholeFile(file, std::min(kMostDocumentBytes, budget.namedBytes));
+        if (!text) return text.GetError();
+        budget.namedBytes -= text.Value().size();
+        if (const MaybeError error = CheckLimitsOfJson(text.Value()))
+            return Error{error->code, file.string() + ": " + error->message};
+        const Result<RagdollSettings> settings =
+            ReadRagdollParts(Json::parse(text.Value()), file.parent_path(), budget);
+        if (!settings) return Error{settings.GetError().code, file.string() + ": " + settings.GetError().message};
+        return settings;
+    });
+}
+
+Result<RagdollSettings> RagdollFromJson(const Json& document) {
+    JsonBudget budget;
+    return ReadRagdollParts(document, {}, budget);
+}
+
+Result<RagdollSettings> ReadRagdoll(const std::string& file) {
+    JsonBudget budget;
+    return ReadRagdollFile(file, budget);
 }
 
 }  // namespace fulcrum

@@ -3,12 +3,14 @@
 
 #include <Fulcrum/Assets/Json/JsonWriter.h>
 #include <Fulcrum/Assets/Json/ShapeJson.h>
-
-#include <fstream>
+#include <Fulcrum/Physics/Files/ErrorBoundary.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 
 namespace fulcrum {
 
-Result<Json> RagdollToJson(const RagdollSettings& settings) {
+namespace {
+
+Result<Json> WrittenParts(const RagdollSettings& settings) {
     if (MaybeError e = Check(settings)) return *e;
     Json parts = Json::array();
     for (size_t i = 0; i < settings.parts.size(); ++i) {
@@ -27,20 +29,25 @@ Result<Json> RagdollToJson(const RagdollSettings& settings) {
     return Json{{"parts", std::move(parts)}};
 }
 
+}  // namespace
+
+Result<Json> RagdollToJson(const RagdollSettings& settings) {
+    return WithErrors("", [&] { return WrittenParts(settings); });
+}
+
 Status WriteRagdoll(const std::string& file, const RagdollSettings& settings) {
-    const Result<Json> document = RagdollToJson(settings);
-    if (!document) return document.GetError();
-    std::ofstream stream(file);
-    // One part per line.
-    const char* before = "{\"parts\": [\n  ";
-    for (const Json& part : document.Value()["parts"]) {
-        stream << before << part.dump(-1, ' ', false, Json::error_handler_t::replace);
-        before = ",\n  ";
-    }
-    stream << "\n]}\n";
-    stream.close();
-    if (!stream) return WrongAt(file, "it cannot be written");
-    return Done{};
+    return WithErrors("cannot write " + file, [&]() -> Status {
+        const Result<Json> document = RagdollToJson(settings);
+        if (!document) return document.GetError();
+        // One part per line.
+        std::string text = "{\"parts\": [";
+        const char* before = "\n  ";
+        for (const Json& part : document.Value()["parts"]) {
+            text += before + part.dump(-1, ' ', false, Json::error_handler_t::replace);
+            before = ",\n  ";
+        }
+        return WriteWholeFile(file, {text, "\n]}\n"});
+    });
 }
 
 }  // namespace fulcrum

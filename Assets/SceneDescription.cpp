@@ -1,5 +1,7 @@
 #include <Fulcrum/Assets/SceneDescription.h>
 
+#include <Fulcrum/Physics/Files/ErrorBoundary.h>
+
 namespace fulcrum {
 
 namespace {
@@ -64,11 +66,13 @@ private:
 
 Result<SceneIds> AddScene(PhysicsSystem& system, const SceneDescription& scene) {
     SceneBuilder builder(system, scene);
-    if (MaybeError e = builder.Run()) {
-        builder.Undo();
-        return *e;
-    }
-    return std::move(builder.ids);
+    const Status run = WithErrors("", [&]() -> Status {
+        if (MaybeError e = builder.Run()) return *e;
+        return Done{};
+    });
+    if (run) return std::move(builder.ids);
+    builder.Undo();
+    return run.GetError();
 }
 
 }  // namespace fulcrum

@@ -1,12 +1,13 @@
 #include <Fulcrum/Assets/SceneFile.h>
 
-#include <Fulcrum/Assets/Json/JsonDepth.h>
 #include <Fulcrum/Assets/Json/JsonWriter.h>
+#include <Fulcrum/Assets/Json/RagdollParts.h>
 #include <Fulcrum/Assets/Json/ShapeJson.h>
 #include <Fulcrum/Assets/RagdollJson.h>
+#include <Fulcrum/Physics/Files/ErrorBoundary.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 
-#include <fstream>
-#include <iterator>
+#include <cmath>
 #include <set>
 
 namespace fulcrum {
@@ -90,6 +91,7 @@ private:
         Describe(fields, body.settings);
         if (!document_.error && !body.settings.shape)
             document_.error = WrongAt(fields.PathOf("shape"), "it is missing");
+        TakeChildren(body.settings.shape.get(), fields.PathOf("shape"), document_);
         if (!body.name.empty()) numbers_[body.name] = static_cast<int>(scene_.bodies.size());
         scene_.bodies.push_back(std::move(body));
     }
@@ -144,7 +146,8 @@ private:
         const Json* parts = fields.Find("parts");
         if (document_.error) return;
         const Result<RagdollSettings> settings =
-            parts ? RagdollFromJson(Json{{"parts", *parts}}) : fulcrum::ReadRagdoll((document_.folder / file).string());
+            parts ? ReadRagdollParts(Json{{"parts", *parts}}, document_.folder, document_.budget)
+                  : ReadRagdollFile(document_.folder / file, document_.budget);
         if (settings) ragdoll.settings = settings.Value();
         else document_.error = Error{settings.GetError().code, fields.Where() + ": " + settings.GetError().message};
         scene_.ragdolls.push_back(std::move(ragdoll));
@@ -159,52 +162,95 @@ private:
 
 // ---- Writing
 
+// A name that is no UTF-8, as a program or a CBOR file may have it, is written with replacement characters.
+std::string Dump(const Json& node) { return node.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 class SceneWriter {
 public:
     explicit SceneWriter(const SceneDescription& scene) : scene_(scene) {}
 
     Result<Json> Write() {
+        if (MaybeError e = CheckHead()) return *e;
         Json node = {{"fulcrumScene", kSceneFileVersion}};
         if (!scene_.description.empty()) node["description"] = scene_.description;
         node["steps"] = scene_.steps;
         if (scene_.dt != SceneDescription().dt) node["dt"] = scene_.dt;
-        if (Json settings = ShortlyWritten(scene_.settings); !settings.empty()) node["settings"] = std::move(settings);
+        const Result<Json> settings = At("settings", [&] { return ShortlyWritten(scene_.settings); });
+        if (!settings) return settings.GetError();
+        if (!settings.Value().empty()) node["settings"] = settings.Value();
         if (MaybeError e = NameShapes()) return *e;
         if (!shapes_.empty()) node["shapes"] = shapes_;
         node["bodies"] = Json::array();
-        for (const SceneBody& body : scene_.bodies) {
-            Json one = Named(body.name);
-            one["shape"] = shapeOf_.at(body.settings.shape.get());
-            BodySettings rest = body.settings;
-            rest.shape = nullptr;
-            one.update(ShortlyWritten(rest));
-            node["bodies"].push_back(std::move(one));
-        }
-        for (size_t i = 0; i < scene_.joints.size(); ++i) {
-            const SceneJoint& joint = scene_.joints[i];
-            if (!IsBody(joint.bodyA) || !IsBody(joint.bodyB))
-                return Error{ErrorCode::OutOfRange,
-                             "joints[" + std::to_string(i) + "]: there is no body of that number"};
-            Json one = Named(joint.name);
-            one["bodyA"] = NameOfBody(joint.bodyA);
-            one["bodyB"] = NameOfBody(joint.bodyB);
-            one.update(JointWritten(joint.settings));
-            node["joints"].push_back(std::move(one));
-        }
-        for (const SceneRagdoll& ragdoll : scene_.ragdolls) {
-            const Result<Json> parts = RagdollToJson(ragdoll.settings);
-            if (!parts) return parts.GetError();
-            Json one = Named(ragdoll.name);
-            one["origin"] = {{"position", Written(ragdoll.origin.position)},
-                             {"rotation", Written(ragdoll.origin.rotation)}};
-            if (ragdoll.motion) one["motion"] = kMotionNames[static_cast<size_t>(*ragdoll.motion)];
-            one.update(parts.Value());
-            node["ragdolls"].push_back(std::move(one));
-        }
+        if (MaybeError e = Each("bodies", scene_.bodies, node)) return *e;
+        if (MaybeError e = Each("joints", scene_.joints, node)) return *e;
+        if (MaybeError e = Each("ragdolls", scene_.ragdolls, node)) return *e;
         return node;
     }
 
 private:
+    // What stands at a place of the document; its errors begin with it.
+    template <class Write>
+    static Result<Json> At(const std::string& place, const Write& write) {
+        Result<Json> written = WithErrors("", [&]() -> Result<Json> { return write(); });
+        if (!written) return Error{written.GetError().code, place + ": " + written.GetError().message};
+        return written;
+    }
+    template <class Element>
+    MaybeError Each(const char* list, const std::vector<Element>& elements, Json& node) {
+        std::set<std::string> names;
+        for (size_t i = 0; i < elements.size(); ++i) {
+            const std::string place = std::string(list) + "[" + std::to_string(i) + "]";
+            const std::string& name = elements[i].name;
+            if (!name.empty() && (name == kWorldName || !names.insert(Dump(Json(name))).second))
+                return Error{ErrorCode::Unsupported,
+                             place + ".name: \"" + name + "\" is another's already, as it is written"};
+            Result<Json> one = At(place, [&] { return WrittenOne(elements[i]); });
+            if (!one) return one.GetError();
+            node[list].push_back(std::move(one.Value()));
+        }
+        return {};
+    }
+    // What reading refuses.
+    MaybeError CheckHead() const {
+        if (scene_.steps < 1) return Error{ErrorCode::NonPositive, "steps: it must be 1 or more"};
+        if (!(scene_.dt > 0 && std::isfinite(scene_.dt)))
+            return Error{ErrorCode::NonPositive, "dt: it must be a positive time in seconds"};
+        return {};
+    }
+
+    Result<Json> WrittenOne(const SceneBody& body) const {
+        Json one = Named(body.name);
+        one["shape"] = shapeOf_.at(body.settings.shape.get());
+        BodySettings rest = body.settings;
+        rest.shape = nullptr;
+        one.update(ShortlyWritten(rest));
+        return one;
+    }
+    Result<Json> WrittenOne(const SceneJoint& joint) const {
+        if (!IsBody(joint.bodyA) || !IsBody(joint.bodyB))
+            return Error{ErrorCode::OutOfRange, "there is no body of that number"};
+        Json one = Named(joint.name);
+        one["bodyA"] = NameOfBody(joint.bodyA);
+        one["bodyB"] = NameOfBody(joint.bodyB);
+        one.update(JointWritten(joint.settings));
+        return one;
+    }
+    static Result<Json> WrittenOne(const SceneRagdoll& ragdoll) {
+        const Result<Json> parts = RagdollToJson(ragdoll.settings);
+        if (!parts) return parts.GetError();
+        Json one = Named(ragdoll.name);
+        JsonWriter origin;
+        origin.Field("position", ragdoll.origin.position);
+        origin.Field("rotation", ragdoll.origin.rotation);
+        one["origin"] = origin.node;
+        if (ragdoll.motion) {
+            JsonWriter motion;
+            motion.Choice("motion", *ragdoll.motion, kMotionNames);
+            one.update(motion.node);
+        }
+        one.update(parts.Value());
+        return one;
+    }
     static Json Named(const std::string& name) {
         Json node = Json::object();
         if (!name.empty()) node["name"] = name;
@@ -219,6 +265,7 @@ private:
 
     // A shape of one body is written in its body, one of several in `shapes`, by a name.
     MaybeError NameShapes() {
+        uint64_t comparisons = 0;  // of names, as they are read
         std::map<const Shape*, size_t> uses;
         for (const SceneBody& body : scene_.bodies) ++uses[body.settings.shape.get()];
         for (size_t i = 0; i < scene_.bodies.size(); ++i) {
@@ -234,6 +281,8 @@ private:
                 place = node.Value();
             } else {
                 const std::string name = "shape" + std::to_string(shapes_.size());
+                if (comparisons += shapes_.size(); comparisons > DocumentLimits().comparisons)
+                    return Error{ErrorCode::OutOfRange, "more than 46341 shapes are those of several bodies"};
                 shapes_[name] = node.Value();
                 place = name;
             }
@@ -245,9 +294,6 @@ private:
     Json shapes_ = Json::object();
     std::map<const Shape*, Json> shapeOf_;  // what stands in a body's place
 };
-
-// A name that is no UTF-8, as a program or a CBOR file may have it, is written with replacement characters.
-std::string Dump(const Json& node) { return node.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 // One element of the lists a line.
 std::string Text(const Json& scene) {
@@ -275,52 +321,52 @@ std::string Text(const Json& scene) {
 }  // namespace
 
 Result<SceneDescription> SceneFromJson(std::string_view text, const std::filesystem::path& folder) {
-    if (const MaybeError error = CheckDepthOfJson(text)) return WrongAt("", error->message);
-    try {
+    return WithErrors("the document", [&]() -> Result<SceneDescription> {
+        if (const MaybeError e = CheckLimitsOfJson(text)) return Error{e->code, "the document: " + e->message};
         const Json node = Json::parse(text);
         return SceneReader(node, folder).Read();
-    } catch (const Json::exception& error) {
-        return WrongAt("", error.what());
-    }
+    });
+}
+
+Result<SceneDescription> SceneFromCbor(std::string_view bytes, const std::filesystem::path& folder) {
+    return WithErrors("the document", [&]() -> Result<SceneDescription> {
+        if (const MaybeError e = CheckLimitsOfCbor(bytes)) return Error{e->code, "the document: " + e->message};
+        const Json node = Json::from_cbor(bytes, true, false);
+        if (node.is_discarded()) return WrongAt("", "it is neither JSON nor CBOR");
+        return SceneReader(node, folder).Read();
+    });
 }
 
 Result<std::string> SceneToJson(const SceneDescription& scene) {
-    const Result<Json> node = SceneWriter(scene).Write();
-    if (!node) return node.GetError();
-    return Text(node.Value());
+    return WithErrors("", [&]() -> Result<std::string> {
+        const Result<Json> node = SceneWriter(scene).Write();
+        if (!node) return node.GetError();
+        return Text(node.Value());
+    });
 }
 
 Result<SceneDescription> ReadScene(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) return WrongAt(file.string(), "it cannot be opened");
-    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
-    if (stream.bad()) return WrongAt(file.string(), "it cannot be read");
-    const size_t first = bytes.find_first_not_of(" \t\r\n");
-    const bool isText = first != std::string::npos && bytes[first] == '{';
-    Result<SceneDescription> scene = [&]() -> Result<SceneDescription> {
-        if (isText) return SceneFromJson(bytes, file.parent_path());
-        if (const MaybeError error = CheckDepthOfCbor(bytes)) return WrongAt("", error->message);
-        const Json node = Json::from_cbor(bytes, true, false);
-        if (node.is_discarded()) return WrongAt("", "it is neither JSON nor CBOR");
-        return SceneReader(node, file.parent_path()).Read();
-    }();
-    if (!scene) return Error{scene.GetError().code, file.string() + ": " + scene.GetError().message};
-    return scene;
+    return WithErrors(file.string(), [&]() -> Result<SceneDescription> {
+        const Result<std::string> read = ReadWholeFile(file);
+        if (!read) return read.GetError();
+        const std::string& bytes = read.Value();
+        const size_t first = bytes.find_first_not_of(" \t\r\n");
+        const bool isText = first != std::string::npos && bytes[first] == '{';
+        Result<SceneDescription> scene =
+            isText ? SceneFromJson(bytes, file.parent_path()) : SceneFromCbor(bytes, file.parent_path());
+        if (!scene) return Error{scene.GetError().code, file.string() + ": " + scene.GetError().message};
+        return scene;
+    });
 }
 
 Status WriteScene(const std::filesystem::path& file, const SceneDescription& scene) {
-    const Result<Json> node = SceneWriter(scene).Write();
-    if (!node) return node.GetError();
-    std::ofstream stream(file, std::ios::binary);
-    if (file.extension() == ".cbor") {
+    return WithErrors("cannot write " + file.string(), [&]() -> Status {
+        const Result<Json> node = SceneWriter(scene).Write();
+        if (!node) return node.GetError();
+        if (file.extension() != ".cbor") return WriteWholeFile(file, {Text(node.Value())});
         const std::vector<uint8_t> bytes = Json::to_cbor(node.Value());
-        stream.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
-    } else {
-        stream << Text(node.Value());
-    }
-    stream.close();
-    if (!stream) return WrongAt(file.string(), "it cannot be written");
-    return Done{};
+        return WriteWholeFile(file, {{reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
+    });
 }
 
 }  // namespace fulcrum

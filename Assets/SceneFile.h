@@ -22,15 +22,19 @@ namespace fulcrum {
 inline constexpr int kSceneFileVersion = 1;
 
 // Names of other files in it are relative to `folder`. Errors name the path in the document, such as
-// `bodies[1].shape.radius: of type string; it must be a number`, or the line of a syntax error.
+// `bodies[1].shape.radius: of type string; it must be a number`, or the line of a syntax error; OutOfRange: more than
+// is read (Docs/SceneFiles.md says how much), or than there is memory for.
 Result<SceneDescription> SceneFromJson(std::string_view text, const std::filesystem::path& folder = {});
+Result<SceneDescription> SceneFromCbor(std::string_view bytes, const std::filesystem::path& folder = {});
 // Writes only what differs from the defaults; shapes of several bodies once. Reading it gives the same scene, bit by
-// bit. Errors: Unsupported (a custom shape, a group filter), OutOfRange (a number of a body).
+// bit. Errors: Unsupported (a custom shape, a group filter, a number that is none, an enumerator that does not exist, a
+// name that two have), NonPositive (steps, dt), OutOfRange (a number of a body).
 Result<std::string> SceneToJson(const SceneDescription& scene);
 
 // JSON or CBOR, by what is in the file. Errors also if it cannot be read.
 Result<SceneDescription> ReadScene(const std::filesystem::path& file);
-// CBOR where the name ends in .cbor, else JSON. Errors also if it cannot be written.
+// CBOR where the name ends in .cbor, else JSON. Errors also if it cannot be written: a file that was there is then as
+// it was.
 Status WriteScene(const std::filesystem::path& file, const SceneDescription& scene);
 
 }  // namespace fulcrum

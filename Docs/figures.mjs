@@ -5,9 +5,11 @@
 //   figures.mjs --take BENCH.json ... [--bullet MS.json]
 //                                              first puts what `fulcrum bench --json` wrote into the JSON; with --peer bullet
 //                                              it has Bullet's times, else MS.json has them, ms with one thread by scene
-import { existsSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+
+import { writeWholeFile } from './wholeFile.mjs';
 
 const root = join(dirname(fileURLToPath(import.meta.url)), '..');
 const jsonFile = join(root, 'Docs', 'figures.json');
@@ -153,7 +155,7 @@ function writeDocuments(figures, isCheck) {
     const wanted = DRAWINGS[file]?.(figures) ?? written(text, figures, file);
     if (wanted === text) continue;
     if (!isCheck) {
-      writeFileSync(join(root, file), wanted);
+      writeWholeFile(join(root, file), wanted);
       console.log(`Wrote ${file}`);
       continue;
     }
@@ -234,7 +236,7 @@ function main(options) {
       const written = JSON.parse(readFileSync(file, 'utf8'));
       for (const run of written.runs ?? written) take(figures, run);
     }
-    writeFileSync(jsonFile, `${laidOut(figures)}\n`);
+    writeWholeFile(jsonFile, `${laidOut(figures)}\n`);
   } else if (verb !== undefined && verb !== '--check') {
     throw new Error(`unknown option '${verb}'; there are --check and --take`);
   }

@@ -32,7 +32,7 @@ struct ContactView {
 // Properties of a contact in this step.
 struct ContactChange {
     // Set from the two materials before every call. A value out of range or not finite is ignored.
-    float friction, restitution;  // >= 0; 0..1
+    float friction, restitution;  // 0..1e6; 0..1
     // Surface velocity of B relative to A in addition to the motion of the bodies (conveyor belt): m/s at the contact's
     // center, and rad/s, world axes. It changes the slip velocity of friction. Only its components in the contact plane
     // and the rotation about the normal are used. Ignored if not finite.

@@ -29,7 +29,7 @@ enum class MotionType : uint8_t {
 enum class CombineRule : uint8_t { GeometricMean, Average, Minimum, Multiply, Maximum };
 
 struct Material {
-    float friction = 0.5f;     // Coulomb coefficient, >= 0
+    float friction = 0.5f;     // Coulomb coefficient, >= 0, at most 1e6
     float restitution = 0.0f;  // 0 (no bounce) .. 1 (no loss)
     CombineRule frictionRule = CombineRule::GeometricMean;
     CombineRule restitutionRule = CombineRule::Maximum;

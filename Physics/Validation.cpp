@@ -77,6 +77,7 @@ MaybeError CheckRotation(const char* field, const Quaternion& value) {
 
 MaybeError Check(const Material& m) {
     return FirstOf(CheckNotNegative("material.friction", m.friction),
+                   CheckRange("material.friction", m.friction, 0, kMostFriction),
                    CheckRange("material.restitution", m.restitution, 0, 1),
                    CheckEnum("material.frictionRule", m.frictionRule, CombineRule::Maximum),
                    CheckEnum("material.restitutionRule", m.restitutionRule, CombineRule::Maximum));

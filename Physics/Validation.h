@@ -26,6 +26,8 @@ MaybeError CheckEnum(const char* field, E value, E last) {
 MaybeError CheckInverses(const char* massField, const char* inertiaField, float mass, const Vector3& inertia);
 // Not null; for a dynamic body, with a volume.
 MaybeError CheckShape(const Shape* shape, MotionType motion);
+// So that the product of two, which CombineRule::Multiply takes, times a normal impulse is a float.
+inline constexpr float kMostFriction = 1e6f;
 MaybeError Check(const Material& material);
 MaybeError CheckContinuous(ContinuousCollision continuous, const Shape& shape);
 MaybeError CheckSensor(SensorSees sees);

@@ -1,12 +1,14 @@
 // Reads settings from JSON: an archive for SettingsFields.h. One thread.
 #pragma once
 
+#include <Fulcrum/Assets/Json/JsonLimits.h>
 #include <Fulcrum/Assets/Json/JsonNames.h>
 #include <Fulcrum/Physics/SettingsFields.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -24,11 +26,19 @@ std::string ListOf(const Names& names) {
     return list;
 }
 
+// What a document may still ask for, with all that it names (JsonLimits.h).
+struct JsonBudget {
+    uint64_t children = kMostChildren;
+    uint64_t namedBytes = kMostNamedBytes;
+};
+
 // What is the same for a whole document.
 struct JsonDocument {
     MaybeError error;                        // the first
     std::map<std::string, ShapePtr> shapes;  // that bodies may name
     std::filesystem::path folder;            // to which names of other files are relative
+    JsonBudget budget;
+    int levels = 0;  // of shapes within shapes
 };
 
 // Reads the fields of one object. Errors name the path in the document.
@@ -87,7 +97,7 @@ public:
             if (node.is_string()) value = node.get<std::string>();
             else Fail(path, "a string", &node);
         } else if constexpr (std::is_floating_point_v<T>) {
-            if (node.is_number()) value = static_cast<T>(node.get<double>());
+            if (node.is_number()) ReadReal(node.get<double>(), path, value);
             else if (node == "infinity") value = std::numeric_limits<T>::infinity();
             else if (node == "-infinity") value = -std::numeric_limits<T>::infinity();
             else Fail(path, "a number", &node);
@@ -123,6 +133,13 @@ private:
         if (error_) return;
         error_ = WrongAt(path, (node ? std::string("of type ") + node->type_name() + "; it" : std::string("it")) +
                                    " must be " + expected);
+    }
+
+    // A finite number must not become an infinite one.
+    template <class T>
+    void ReadReal(double number, const std::string& path, T& value) {
+        if (std::fabs(number) <= double{std::numeric_limits<T>::max()}) value = static_cast<T>(number);
+        else Fail(path, sizeof(T) == 4 ? "a number within 3.4e38, or infinity in quotes" : "a number that is finite");
     }
 
     template <class T>

@@ -8,7 +8,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <exception>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 namespace fulcrum {
 
@@ -26,6 +29,20 @@ inline double AsShort(float x) {
     return static_cast<float>(result) == x ? result : x;
 }
 
+// Thrown where a setting has a value that no document has: not a number, an enumerator that does not exist, nothing. It
+// says which; who writes a document returns it as an Error.
+class CannotBeWritten : public std::exception {
+public:
+    explicit CannotBeWritten(std::string text) : text_(std::move(text)) {}
+    CannotBeWritten In(const std::string& field) const {
+        return CannotBeWritten(field + (text_.starts_with(' ') ? "" : ".") + text_);
+    }
+    const char* what() const noexcept override { return text_.c_str(); }
+
+private:
+    std::string text_;
+};
+
 template <class T>
 Json Written(const T& value);
 
@@ -34,11 +51,18 @@ class JsonWriter {
 public:
     template <class T>
     void Field(const char* name, const T& value) {
-        node[name] = Written(value);
+        try {
+            node[name] = Written(value);
+        } catch (const CannotBeWritten& inside) {
+            throw inside.In(name);
+        }
     }
     template <class E, class Names>
     void Choice(const char* name, const E& value, const Names& names) {
-        node[name] = names[static_cast<size_t>(value)];
+        const auto number = static_cast<size_t>(value);
+        if (number >= names.size())
+            throw CannotBeWritten(" is " + std::to_string(number) + ", which is none of its values").In(name);
+        node[name] = names[number];
     }
     Json node = Json::object();
 };
@@ -57,6 +81,7 @@ struct IsList<std::array<T, kSize>> : std::true_type {};
 template <class T>
 Json Written(const T& value) {
     if constexpr (std::is_floating_point_v<T>) {
+        if (std::isnan(value)) throw CannotBeWritten(" is not a number");
         if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
         if constexpr (std::is_same_v<T, float>) return AsShort(value);
         else return value;
@@ -75,6 +100,7 @@ Json Written(const T& value) {
     } else if constexpr (std::is_same_v<T, ShapePtr>) {
         return value ? ShapeWritten(*value) : Json();
     } else if constexpr (std::is_same_v<T, std::shared_ptr<const Path>>) {
+        if (!value) throw CannotBeWritten(" is null");
         JsonWriter fields;
         fields.Field("isClosed", value->IsClosed());
         fields.Field("points", std::vector<PathPoint>(value->Points().begin(), value->Points().end()));
@@ -112,6 +138,7 @@ Json ShortlyWritten(const T& value) {
 // A variant of joint settings.
 template <class Joint>
 Json JointWritten(const Joint& joint) {
+    if (joint.valueless_by_exception()) throw CannotBeWritten("settings has no kind of joint");
     Json node = {{"kind", kJointKindNames<Joint>[joint.index()]}};
     node.update(std::visit([](const auto& ofKind) { return ShortlyWritten(ofKind); }, joint));
     return node;

@@ -37,6 +37,24 @@ Vector3 ReadVector(JsonReader& fields, const char* name, const Vector3& usual = 
     return Read(fields, name, Vector3(usual));
 }
 
+void TakeChildren(uint64_t count, const std::string& path, JsonDocument& document) {
+    if (document.error) return;
+    if (const MaybeError e = TakeFrom(document.budget.children, count, kMostChildren, "children of compounds"))
+        document.error = Error{e->code, path + ": " + e->message};
+}
+
+// Counts the bytes of a file that the document names.
+std::filesystem::path NamedFile(JsonReader& fields) {
+    const std::filesystem::path file = fields.Document().folder / Read<std::string>(fields, "file");
+    std::error_code ignored;
+    const uint64_t size =
+        std::filesystem::is_regular_file(file, ignored) ? std::filesystem::file_size(file, ignored) : 0;
+    if (fields.Document().error) return file;
+    const MaybeError e = TakeFrom(fields.Document().budget.namedBytes, size, kMostNamedBytes, "bytes of files");
+    if (e) fields.Document().error = Error{e->code, fields.Where() + ": " + e->message};
+    return file;
+}
+
 ShapePtr Kept(JsonReader& fields, auto&& created) {
     if (fields.Document().error) return nullptr;
     if (created) return created.Value();
@@ -105,32 +123,39 @@ ShapePtr ReadHeightField(JsonReader& fields) {
     return Kept(fields, HeightField::Create(settings));
 }
 
-ShapePtr ReadCompound(JsonReader& fields) {
-    const auto children = Read<std::vector<CompoundShape::ChildSettings>>(fields, "children");
-    return Kept(fields, Compound::Create(children));
+// Children that are compounds count as theirs.
+size_t ChildrenOf(const Shape* shape) {
+    return shape && shape->IsCompound() ? static_cast<const CompoundShape*>(shape)->Children().size() : 0;
 }
-ShapePtr ReadMutableCompound(JsonReader& fields) {
+
+template <class AnyCompound>
+ShapePtr ReadAnyCompound(JsonReader& fields) {
     const auto children = Read<std::vector<CompoundShape::ChildSettings>>(fields, "children");
-    return Kept(fields, MutableCompound::Create(children));
+    uint64_t count = 0;
+    for (const CompoundShape::ChildSettings& child : children)
+        count += std::max<size_t>(ChildrenOf(child.shape.get()), 1);
+    TakeChildren(count, fields.Where(), fields.Document());
+    if (fields.Document().error) return nullptr;
+    return Kept(fields, AnyCompound::Create(children));
 }
 
 ShapePtr ReadEmpty(JsonReader&) { return EmptyShape::Create(); }
 
 ShapePtr ReadHullFile(JsonReader& fields) {
-    const std::string file = Read<std::string>(fields, "file");
+    const std::filesystem::path file = NamedFile(fields);
     const double size = Read<double>(fields, "size", 1);
     if (fields.Document().error) return nullptr;
-    const Result<ImportedShape> imported = ImportShape(fields.Document().folder / file, size);
+    const Result<ImportedShape> imported = ImportShape(file, size);
     return Kept(fields, imported ? Result<ShapePtr>(imported.Value().shape) : Result<ShapePtr>(imported.GetError()));
 }
 
 ShapePtr ReadMeshFile(JsonReader& fields) {
-    const std::string file = Read<std::string>(fields, "file");
+    const std::filesystem::path file = NamedFile(fields);
     MeshImportSettings settings;
     settings.size = Read(fields, "size", settings.size);
     settings.scale = Read(fields, "scale", settings.scale);
     if (fields.Document().error) return nullptr;
-    const Result<ImportedMesh> imported = ImportMesh(fields.Document().folder / file, settings);
+    const Result<ImportedMesh> imported = ImportMesh(file, settings);
     return Kept(fields, imported ? Result<ShapePtr>(imported.Value().mesh) : Result<ShapePtr>(imported.GetError()));
 }
 
@@ -153,8 +178,8 @@ constexpr ShapeKind kShapeKinds[] = {{"Sphere", ReadSphere},
                                      {"Plane", ReadPlane},
                                      {"TriangleMesh", ReadTriangleMesh},
                                      {"HeightField", ReadHeightField},
-                                     {"Compound", ReadCompound},
-                                     {"MutableCompound", ReadMutableCompound},
+                                     {"Compound", ReadAnyCompound<Compound>},
+                                     {"MutableCompound", ReadAnyCompound<MutableCompound>},
                                      {"Empty", ReadEmpty},
                                      {"HullFile", ReadHullFile},
                                      {"MeshFile", ReadMeshFile},
@@ -167,6 +192,10 @@ constexpr auto kShapeKindNames = [] {
 
 }  // namespace
 
+void TakeChildren(const Shape* shape, const std::string& path, JsonDocument& document) {
+    TakeChildren(ChildrenOf(shape), path, document);
+}
+
 std::span<const char* const> ShapeKindNames() { return kShapeKindNames; }
 
 void JsonReader::ReadMore(const Json& node, const std::string& path, ShapePtr& value) {
@@ -177,13 +206,18 @@ void JsonReader::ReadMore(const Json& node, const std::string& path, ShapePtr& v
         else error_ = WrongAt(path, "no shape has the name \"" + node.get<std::string>() + "\"");
         return;
     }
+    // Documents that a program made have not been counted.
+    if (document_.levels >= DocumentLimits().levels) error_ = WrongAt(path, "shapes are nested too deep");
+    if (error_) return;
     JsonReader fields(node, path, document_);
     if (!error_ && !node.contains("kind"))
         error_ = WrongAt(path, "kind is missing; it must be one of " + ListOf(kShapeKindNames));
     size_t kind = 0;
     fields.Choice("kind", kind, kShapeKindNames);
     if (error_) return;
+    ++document_.levels;
     ShapePtr shape = kShapeKinds[kind].read(fields);
+    --document_.levels;
     fields.Finish();
     if (!error_) value = std::move(shape);
 }

@@ -27,6 +27,10 @@ std::span<const char* const> ShapeKindNames();
 // Error Unsupported: a custom shape.
 Result<Json> ShapeToJson(const ShapePtr& shape);
 
+// Counts the children of a compound that a body has, if it is one: a small document may have many bodies of a large
+// one.
+void TakeChildren(const Shape* shape, const std::string& path, JsonDocument& document);
+
 // Kinds that ragdolls may have written: a ball, a box, a capsule, a sharp hull.
 bool CanBeWrittenByKind(const Shape& shape);
 

@@ -1,5 +1,6 @@
 // Reads the meshes of a file, by way of assimp. Called by MeshImport; thread-safe. The only file that knows assimp is
-// MeshFile.cpp.
+// MeshFile.cpp. It reads in a process of its own: assimp's readers crash, hang or allocate without end for some broken
+// files.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -23,7 +24,9 @@ struct MeshPart {
 };
 
 // One for each node of the file that has a mesh; polygons are triangulated, and mirrored meshes keep their fronts.
-// Errors: UnknownId (there is no such file), Unsupported (assimp cannot read it), Degenerate (no mesh in it).
+// Errors: UnknownId (there is no such file), Unsupported (assimp cannot read it), Degenerate (no mesh in it),
+// OutOfRange (it takes more than 4 GiB of memory; more than 2 s, and one more for each million bytes; or makes more
+// than 2 GiB of parts).
 Result<std::vector<MeshPart>> ReadMeshParts(const std::filesystem::path& path);
 
 // The box around all points that are finite; empty where there are none.

@@ -1,6 +1,6 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Baseline.h>
 
-#include <Fulcrum/Samples/Viewer/WholeFile.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 
 #include <nlohmann/json.hpp>
 
@@ -91,7 +91,7 @@ std::string BaselineOf(std::span<const RunRecord> runs, bool isQuick) {
 }
 
 Status SaveBaseline(const std::filesystem::path& path, std::span<const RunRecord> runs, bool isQuick) {
-    return WriteWholeFile(path, {BaselineOf(runs, isQuick)});
+    return WriteWholeFile(path, {BaselineOf(runs, isQuick)}, MissingFolders::AreCreated);
 }
 
 Result<Comparison> CompareWithBaseline(const std::string& text, std::span<const RunRecord> runs, bool isQuick) {

@@ -1,5 +1,6 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Lab.h>
 
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 
 #include <nlohmann/json.hpp>
@@ -10,7 +11,6 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <thread>
 
 namespace fulcrum::accuracy {
@@ -56,12 +56,11 @@ public:
 
     // Takes over the complete lines of the file, and cuts off what follows them.
     Status Resume(std::map<Key, RunRecord>& runs) {
-        std::ifstream file(path_, std::ios::binary);
-        if (!file) return Begin();
-        std::ostringstream content;
-        content << file.rdbuf();
-        file.close();
-        const std::string text = content.str();
+        std::error_code error;
+        if (!std::filesystem::exists(path_, error)) return Begin();
+        const Result<std::string> read = ReadWholeFile(path_);
+        if (!read) return read.GetError();
+        const std::string& text = read.Value();
         size_t complete = 0;  // bytes
         for (size_t end; (end = text.find('\n', complete)) != std::string::npos; complete = end + 1) {
             const std::string line = text.substr(complete, end - complete);
@@ -79,7 +78,6 @@ public:
             runs[KeyOf(record.Value())] = std::move(record.Value());
         }
         if (complete == 0) return Begin();
-        std::error_code error;
         std::filesystem::resize_file(path_, complete, error);
         if (error) return Error{ErrorCode::OutOfRange, path_.string() + ": " + error.message()};
         return Open(std::ios::app);
@@ -89,15 +87,19 @@ public:
         std::filesystem::create_directories(path_.parent_path(), ignored);
         if (std::filesystem::exists(path_, ignored))
             std::filesystem::rename(path_, std::filesystem::path(path_) += ".bak", ignored);
-        Status status = Open(std::ios::trunc);
-        if (status) file_ << header_ << '\n' << std::flush;
-        return status;
+        if (Status status = Open(std::ios::trunc); !status) return status;
+        return Write(header_ + "\n");
     }
-    void Append(const RunRecord& record) { file_ << ToJson(record).dump() + "\n" << std::flush; }
+    Status Append(const RunRecord& record) { return Write(ToJson(record).dump() + "\n"); }
 
 private:
     Status Open(std::ios::openmode mode) {
         file_.open(path_, std::ios::binary | std::ios::out | mode);
+        if (!file_) return Error{ErrorCode::OutOfRange, "cannot write " + path_.string()};
+        return Done{};
+    }
+    Status Write(const std::string& text) {
+        file_ << text << std::flush;
         if (!file_) return Error{ErrorCode::OutOfRange, "cannot write " + path_.string()};
         return Done{};
     }
@@ -108,14 +110,15 @@ private:
 };
 
 // Makes the runs on so many threads. Each run is alone in its thread, so that neither their number nor their order
-// changes a result.
-void MakeRuns(const std::vector<PlannedRun>& plan, const LabOptions& options, RunLog& log,
-              std::map<Key, RunRecord>& runs) {
+// changes a result. Ends soon where the log cannot be written, as on a full disk.
+Status MakeRuns(const std::vector<PlannedRun>& plan, const LabOptions& options, RunLog& log,
+                std::map<Key, RunRecord>& runs) {
     int total = 0;
     for (const PlannedRun& each : plan) total += each.weight;
     std::optional<Progress> progress;
     if (options.showsProgress) progress.emplace("accuracy", total, ProgressShows::TimeLeft);
     std::atomic<size_t> next{0};
+    Status written = Done{};
     std::mutex mutex, ofPeer;  // Bullet is not made for several threads, even of several worlds
     const auto work = [&] {
         for (size_t i; (i = next++) < plan.size();) {
@@ -123,7 +126,10 @@ void MakeRuns(const std::vector<PlannedRun>& plan, const LabOptions& options, Ru
             if (plan[i].setting.peer) alone = std::unique_lock(ofPeer);
             RunRecord record = Measure(*plan[i].scene, plan[i].setting, options.isQuick, options.isTimedOnce);
             const std::lock_guard lock(mutex);
-            log.Append(record);
+            if (Status status = log.Append(record); !status) {
+                written = status;
+                next = plan.size();
+            }
             runs[KeyOf(record)] = std::move(record);
             if (progress) progress->Advance(plan[i].weight);
         }
@@ -132,6 +138,7 @@ void MakeRuns(const std::vector<PlannedRun>& plan, const LabOptions& options, Ru
     for (int i = 1; i < options.threads; ++i) threads.emplace_back(work);
     work();
     for (std::thread& thread : threads) thread.join();
+    return written;
 }
 
 }  // namespace
@@ -150,7 +157,8 @@ Result<std::vector<RunRecord>> RunLab(const LabOptions& options) {
     // soon.
     std::stable_sort(missing.begin(), missing.end(),
                      [](const PlannedRun& a, const PlannedRun& b) { return a.weight < b.weight; });
-    if (!missing.empty()) MakeRuns(missing, options, log, runs);
+    if (!missing.empty())
+        if (const Status made = MakeRuns(missing, options, log, runs); !made) return made.GetError();
 
     std::vector<RunRecord> sorted;
     for (const LabScene* scene : options.scenes) {

@@ -3,15 +3,13 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Baseline.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Options.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Targets.h>
-#include <Fulcrum/Samples/Viewer/WholeFile.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
 namespace fulcrum::accuracy {
 namespace {
@@ -68,11 +66,9 @@ int ReportSoak(std::span<const RunRecord> runs) {
 }
 
 int Compare(const LabCommand& command, std::span<const RunRecord> runs) {
-    std::ostringstream content;
-    std::ifstream file(command.baseline, std::ios::binary);
-    if (!file) return Fail("cannot read " + command.baseline.string());
-    content << file.rdbuf();
-    const Result<Comparison> compared = CompareWithBaseline(content.str(), runs, command.lab.isQuick);
+    const Result<std::string> content = ReadWholeFile(command.baseline);
+    if (!content) return Fail("cannot read " + content.GetError().message);
+    const Result<Comparison> compared = CompareWithBaseline(content.Value(), runs, command.lab.isQuick);
     if (!compared) return Fail(command.baseline.string() + ": " + compared.GetError().message);
     const Comparison& comparison = compared.Value();
     for (const std::string& line : comparison.better) std::printf("better: %s\n", line.c_str());

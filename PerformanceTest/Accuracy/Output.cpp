@@ -4,26 +4,23 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Curves.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Registry.h>
 #include <Fulcrum/PerformanceTest/Peers/Peer.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
-#include <Fulcrum/Samples/Viewer/WholeFile.h>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 namespace fulcrum::accuracy {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string ReadFile(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream content;
-    content << file.rdbuf();
-    return content.str();
+// Empty where it cannot be read.
+std::string ContentOf(const std::filesystem::path& path) {
+    Result<std::string> read = ReadWholeFile(path);
+    return read ? std::move(read.Value()) : std::string();
 }
 
 std::string Number(double value) {
@@ -115,7 +112,7 @@ Json JsonOf(std::span<const SceneRuns> scenes, const Circumstances& circumstance
     json["runs_at_a_time"] = circumstances.threads;
     const Peer* peer = circumstances.peer;
     json["peer"] = peer ? Json{{"family", peer->name}, {"engine", peer->Label()}} : Json(nullptr);
-    json["peers"] = Json::parse(ReadFile(FULCRUM_ACCURACY_PEERS), nullptr, false);
+    json["peers"] = Json::parse(ContentOf(FULCRUM_ACCURACY_PEERS), nullptr, false);
     json["scenes"] = Json::array();
     for (const SceneRuns& each : scenes) {
         const LabScene& scene = *each.scene;
@@ -136,7 +133,7 @@ Json JsonOf(std::span<const SceneRuns> scenes, const Circumstances& circumstance
 
 Status WriteReport(const Json& runs, const std::filesystem::path& path) {
     constexpr std::string_view kPlaceOfRuns = "@@FULCRUM_RUNS@@";
-    const std::string page = ReadFile(FULCRUM_ACCURACY_PAGE);
+    const std::string page = ContentOf(FULCRUM_ACCURACY_PAGE);
     const size_t place = page.find(kPlaceOfRuns);
     if (place == std::string::npos)
         return Error{ErrorCode::OutOfRange,
@@ -144,7 +141,8 @@ Status WriteReport(const Json& runs, const std::filesystem::path& path) {
     std::string data;
     for (const char c : runs.dump()) data += c == '<' ? std::string("\\u003c") : std::string(1, c);  // ends no script
     const std::string_view whole = page;
-    return WriteWholeFile(path, {whole.substr(0, place), data, whole.substr(place + kPlaceOfRuns.size())});
+    return WriteWholeFile(path, {whole.substr(0, place), data, whole.substr(place + kPlaceOfRuns.size())},
+                          MissingFolders::AreCreated);
 }
 
 }  // namespace fulcrum::accuracy

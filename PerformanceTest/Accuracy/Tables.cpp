@@ -3,12 +3,10 @@
 
 #include <Fulcrum/PerformanceTest/Accuracy/Curves.h>
 #include <Fulcrum/PerformanceTest/Peers/Peer.h>
-#include <Fulcrum/Samples/Viewer/WholeFile.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
 namespace fulcrum::accuracy {
 namespace {
@@ -131,11 +129,9 @@ std::string TablesOf(std::span<const SceneRuns> scenes, const Circumstances& cir
 Status WriteTables(const std::string& tables, const std::filesystem::path& path, const std::string& name) {
     const std::string beginMark = "<!-- accuracy " + name + ": begin -->",
                       endMark = "<!-- accuracy " + name + ": end -->";
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream content;
-    content << file.rdbuf();
-    file.close();
-    const std::string text = content.str();
+    const Result<std::string> read = ReadWholeFile(path);
+    if (!read) return read.GetError();
+    const std::string& text = read.Value();
     const size_t begin = text.find(beginMark + "\n"), end = text.find(endMark);
     if (begin == std::string::npos || end == std::string::npos || end < begin)
         return Error{ErrorCode::OutOfRange, path.string() + " has no lines " + beginMark + " and " + endMark};

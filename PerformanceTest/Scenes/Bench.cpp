@@ -3,6 +3,7 @@
 #include <Fulcrum/PerformanceTest/Scenes/BenchTables.h>
 #include <Fulcrum/PerformanceTest/Scenes/Comparison.h>
 #include <Fulcrum/PerformanceTest/Scenes/History.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
@@ -127,11 +128,9 @@ private:
 
 // Before anything is timed for minutes.
 std::string WhatCannotBeWritten(const BenchOptions& options) {
-    const std::filesystem::path folder = options.save.parent_path();
-    std::error_code error;
-    if (!folder.empty() && !std::filesystem::is_directory(folder, error))
-        return "--save " + options.save.string() + ": there is no folder " + folder.string();
-    return {};
+    if (options.save.empty()) return {};
+    const Status writable = CheckWritable(options.save);
+    return writable ? "" : "--save: " + writable.GetError().message;
 }
 
 int Compare(const nlohmann::ordered_json& document, const SavedRuns& baseline, const BenchOptions& options) {

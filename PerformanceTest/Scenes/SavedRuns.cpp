@@ -2,10 +2,10 @@
 
 #include <Fulcrum/PerformanceTest/Scenes/ReferenceKernel.h>
 #include <Fulcrum/PerformanceTest/Scenes/SampleStatistics.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Samples/Runner/RunEnvironment.h>
 
 #include <cmath>
-#include <fstream>
 
 namespace fulcrum {
 namespace {
@@ -104,11 +104,11 @@ Result<SavedRuns> ParseSavedRuns(const Json& document, const std::string& file) 
 Result<SavedRuns> ReadSavedRuns(const std::filesystem::path& file) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) return Wrong(file.string(), "there is no such file");
-    std::ifstream stream(file);
-    if (!stream) return Wrong(file.string(), "cannot be read");
+    const Result<std::string> text = ReadWholeFile(file);
+    if (!text) return text.GetError();
     Json document;
     try {
-        document = Json::parse(stream);
+        document = Json::parse(text.Value());
     } catch (const Json::exception& exception) {
         return Wrong(file.string(), std::string("is damaged: ") + exception.what());
     }
@@ -116,11 +116,7 @@ Result<SavedRuns> ReadSavedRuns(const std::filesystem::path& file) {
 }
 
 Status WriteSavedRuns(const Json& document, const std::filesystem::path& file) {
-    std::ofstream stream(file);
-    stream << document.dump(2) << "\n";
-    stream.close();
-    if (!stream) return Wrong(file.string(), "cannot be written");
-    return Done{};
+    return WriteWholeFile(file, {document.dump(2), "\n"});
 }
 
 }  // namespace fulcrum

@@ -1,11 +1,12 @@
 #include <Fulcrum/Physics/Recording/CallRecorder.h>
 
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
+#include <Fulcrum/Physics/Files/ErrorBoundary.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Physics/Recording/CallTable.h>
 #include <Fulcrum/Physics/Recording/RecordingFormat.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <unordered_map>
 
@@ -256,16 +257,22 @@ Result<std::unique_ptr<CallRecorder>> CallRecorder::Create(PhysicsSystem& system
 
 Result<std::unique_ptr<CallRecorder>> CallRecorder::ToFile(PhysicsSystem& system, const std::string& file,
                                                            std::span<const CustomShapeFormat> customShapes) {
-    auto stream = std::make_shared<std::ofstream>(file, std::ios::binary);
-    if (!*stream) return Error{ErrorCode::Unsupported, file + ": it cannot be opened"};
-    return Create(
-        system,
-        [stream](std::span<const std::byte> bytes) {
-            stream->write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
-            stream->flush();
-            return static_cast<bool>(*stream);
-        },
-        customShapes);
+    return WithErrors(file, [&]() -> Result<std::unique_ptr<CallRecorder>> {
+        Result<FileReplacement> opened = FileReplacement::Open(file);
+        if (!opened) return Error{ErrorCode::Unsupported, opened.GetError().message};
+        const auto stream = std::make_shared<FileReplacement>(std::move(opened.Value()));
+        auto recorder = Create(
+            system,
+            [stream](std::span<const std::byte> bytes) {
+                return stream->Write({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) && stream->Flush();
+            },
+            customShapes);
+        if (!recorder) return recorder;
+        // It has its beginning: only now an older recording goes.
+        if (const Status replaced = stream->Replace(); !replaced)
+            return Error{ErrorCode::Unsupported, replaced.GetError().message};
+        return recorder;
+    });
 }
 
 Status CallRecorder::GetStatus() const {

@@ -30,7 +30,8 @@ public:
     // the last step).
     static Result<std::unique_ptr<CallRecorder>> Create(PhysicsSystem& system, Sink sink,
                                                         std::span<const CustomShapeFormat> customShapes = {});
-    // Into a file, which is overwritten. Errors also: Unsupported (it cannot be opened).
+    // Into a file, which is overwritten once the beginning of the recording is written. Errors also: Unsupported (it
+    // cannot be written).
     static Result<std::unique_ptr<CallRecorder>> ToFile(PhysicsSystem& system, const std::string& file,
                                                         std::span<const CustomShapeFormat> customShapes = {});
     ~CallRecorder();

@@ -1,10 +1,11 @@
 #include <Fulcrum/Physics/Recording/CallRecording.h>
 
+#include <Fulcrum/Physics/Files/ErrorBoundary.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Physics/Recording/CallTable.h>
 #include <Fulcrum/Physics/Recording/RecordingFormat.h>
 
 #include <algorithm>
-#include <fstream>
 #include <string>
 
 namespace fulcrum {
@@ -140,16 +141,14 @@ Result<CallRecording> CallRecording::Read(std::vector<std::byte> bytes) {
 }
 
 Result<CallRecording> CallRecording::ReadFile(const std::string& file) {
-    std::ifstream stream(file, std::ios::binary | std::ios::ate);
-    const auto fail = [&](ErrorCode code, const std::string& what) { return Error{code, file + ": " + what}; };
-    if (!stream) return fail(ErrorCode::Unsupported, "it cannot be opened");
-    std::vector<std::byte> bytes(static_cast<size_t>(std::max<std::streamoff>(stream.tellg(), 0)));
-    stream.seekg(0);
-    stream.read(reinterpret_cast<char*>(bytes.data()), std::ssize(bytes));
-    if (!stream) return fail(ErrorCode::Unsupported, "it cannot be read");
-    Result<CallRecording> recording = Read(std::move(bytes));
-    if (!recording) return fail(recording.GetError().code, recording.GetError().message);
-    return recording;
+    return WithErrors(file, [&]() -> Result<CallRecording> {
+        const Result<std::string> read = ReadWholeFile(file, kMostRecordingBytes);
+        if (!read) return read.GetError();
+        const auto* begin = reinterpret_cast<const std::byte*>(read.Value().data());
+        Result<CallRecording> recording = Read({begin, begin + read.Value().size()});
+        if (!recording) return Error{recording.GetError().code, file + ": " + recording.GetError().message};
+        return recording;
+    });
 }
 
 }  // namespace fulcrum

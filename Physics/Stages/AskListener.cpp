@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/ContactListener.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
+#include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/Materials.h>
 
 namespace fulcrum {
@@ -66,7 +67,7 @@ ContactView ViewSolvedContact(const BodyStore& bodies, const ColliderStore& coll
 ContactChange AskAbout(const ContactListener& listener, const ContactView& contact, float friction, float restitution) {
     ContactChange change{friction, restitution};
     listener.ModifyContact(contact, change);
-    if (!(change.friction >= 0 && std::isfinite(change.friction))) change.friction = friction;
+    if (!(change.friction >= 0 && change.friction <= kMostFriction)) change.friction = friction;
     if (!(change.restitution >= 0 && change.restitution <= 1)) change.restitution = restitution;
     if (!IsFinite(change.surfaceVelocity) || !IsFinite(change.surfaceAngularVelocity)) {
         change.surfaceVelocity.setZero();

@@ -1,8 +1,9 @@
 // Writes the meshes of this folder: node make.mjs [FOLDER]. Each part is a closed, convex solid of its own (`o` in the file), so
 // that ./fulcrum drop, which makes a hull of each part, keeps the shape of the whole.
-import { writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+
+import { writeWholeFile } from '../../Docs/wholeFile.mjs';
 
 // A solid between rings of the same number of corners, each in a plane, counterclockwise seen from its end; flat at both ends.
 function solidBetween(rings) {
@@ -112,5 +113,5 @@ function objOf(comment, parts) {
 }
 
 const folder = process.argv[2] ?? dirname(fileURLToPath(import.meta.url));
-writeFileSync(join(folder, 'teapot.obj'), objOf('A teapot', teapot()));
-writeFileSync(join(folder, 'fountain.obj'), objOf('A fountain of three basins', fountain()));
+writeWholeFile(join(folder, 'teapot.obj'), objOf('A teapot', teapot()));
+writeWholeFile(join(folder, 'fountain.obj'), objOf('A fountain of three basins', fountain()));

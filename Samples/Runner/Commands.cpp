@@ -4,6 +4,7 @@
 #include <Fulcrum/Assets/SceneFile.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 #include <Fulcrum/Math/Wide.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Physics/Recording/CallRecorder.h>
 #include <Fulcrum/Samples/Runner/FileScene.h>
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
@@ -24,6 +25,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <vector>
 
 namespace fulcrum {
 namespace {
@@ -45,27 +47,37 @@ struct Job {
     std::string description;
 };
 
-// Before the simulation, so that it is not run in vain if the folder is misspelled. Returns an empty text if all is
-// well.
-std::string CheckOutputs(const RunOptions& options, const JsonOutput& json) {
+std::filesystem::path OutputOf(const RunOptions& options, const std::string& name, const char* extension) {
+    std::filesystem::path path = options.out / name;
+    return path += extension;
+}
+
+// Before the simulation, so that it is not run in vain if the folder is misspelled or must not be written. Returns an
+// empty text if all is well.
+std::string CheckOutputs(const RunOptions& options, const std::string& name, const JsonOutput& json) {
     std::error_code error;
     if (options.recordHtml || options.recordGlb) {
         std::filesystem::create_directories(options.out, error);
         if (error) return "cannot create the folder " + options.out.string() + ": " + error.message();
     }
+    std::vector<std::filesystem::path> files;
+    if (options.recordHtml) files.push_back(OutputOf(options, name, ".html"));
+    if (options.recordGlb) files.push_back(OutputOf(options, name, ".glb"));
+    if (!options.calls.empty()) files.push_back(options.calls);
+    for (const std::filesystem::path& file : files)
+        if (const Status writable = CheckWritable(file); !writable) return writable.GetError().message;
     return json.Check();
 }
 
 // Writes the files that the options name. Returns an empty text, or what went wrong.
 std::string WriteOutputs(const Job& job, const Recorder* recorder, const RunFigures& figures) {
-    const std::filesystem::path base = job.options.out / job.name;
     const auto write = [&](const char* extension, auto writer) -> std::string {
-        const std::filesystem::path path = base.string() + extension;
+        const std::filesystem::path path = OutputOf(job.options, job.name, extension);
         const Status status = writer(recorder->recording, path);
         if (!status) return status.GetError().message;
-        if (!job.options.isQuiet)
-            std::printf("Wrote %s (%.1f MB)\n", path.c_str(),
-                        static_cast<double>(std::filesystem::file_size(path)) / 1e6);
+        std::error_code error;
+        const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
+        if (!job.options.isQuiet) std::printf("Wrote %s (%.1f MB)\n", path.c_str(), error ? 0 : bytes / 1e6);
         return {};
     };
     std::string trouble;
@@ -77,7 +89,7 @@ std::string WriteOutputs(const Job& job, const Recorder* recorder, const RunFigu
 }
 
 int RunJob(const Job& job) {
-    const std::string trouble = CheckOutputs(job.options, job.json);
+    const std::string trouble = CheckOutputs(job.options, job.name, job.json);
     if (!trouble.empty()) return Fail(trouble);
 
     std::optional<ThreadPool> pool;

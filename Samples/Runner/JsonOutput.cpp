@@ -1,11 +1,12 @@
 #include <Fulcrum/Samples/Runner/JsonOutput.h>
 
+#include <Fulcrum/Physics/Files/WholeFile.h>
+
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>
 
 #include <cstdio>
-#include <fstream>
 
 namespace fulcrum {
 
@@ -25,11 +26,13 @@ JsonOutput::~JsonOutput() {
 
 std::string JsonOutput::Check() const {
     if (path_ == "-") return standardOutput_ < 0 ? "--json -: there is no standard output" : "";
+    if (path_.empty()) return {};
     const std::filesystem::path folder = path_.parent_path();
     std::error_code error;
     if (!folder.empty() && !std::filesystem::is_directory(folder, error))
         return "--json " + path_.string() + ": there is no folder " + folder.string();
-    return {};
+    const Status writable = CheckWritable(path_);
+    return writable ? "" : "--json: " + writable.GetError().message;
 }
 
 std::string JsonOutput::Write(const nlohmann::ordered_json& json, bool saysWhere) const {
@@ -42,10 +45,7 @@ std::string JsonOutput::Write(const nlohmann::ordered_json& json, bool saysWhere
         }
         return {};
     }
-    std::ofstream file(path_);
-    file << text;
-    file.close();
-    if (!file) return "cannot write " + path_.string();
+    if (const Status written = WriteWholeFile(path_, {text}); !written) return written.GetError().message;
     if (saysWhere) std::printf("Wrote %s\n", path_.c_str());
     return {};
 }

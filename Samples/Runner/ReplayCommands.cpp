@@ -1,18 +1,14 @@
 #include <Fulcrum/Samples/Runner/ReplayCommands.h>
 
+#include <Fulcrum/Assets/Meshes/ChildProcess.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Physics/Recording/Replay.h>
 #include <Fulcrum/Samples/Runner/Progress.h>
 #include <Fulcrum/Samples/Runner/Simulation.h>
 
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <cstdio>
-#include <fstream>
 
 namespace fulcrum {
 
@@ -37,35 +33,8 @@ FailureCheck FailureOf(const ShrinkOptions& options) {
 }  // namespace
 
 IsolatedRun RunInAProcess(const Function<void(const CallRecorder::Sink& send)>& play) {
-    int ends[2];
-    IsolatedRun run;
-    if (pipe(ends) != 0) return run;
-    std::fflush(nullptr);
-    const pid_t child = fork();
-    if (child == 0) {
-        close(ends[0]);
-        const rlimit none{0, 0};
-        setrlimit(RLIMIT_CORE, &none);
-        for (FILE* const output : {stdout, stderr})
-            if (!std::freopen("/dev/null", "w", output)) _exit(0);
-        play([end = ends[1]](std::span<const std::byte> bytes) {
-            while (!bytes.empty()) {
-                const ssize_t sent = write(end, bytes.data(), bytes.size());
-                if (sent <= 0) return false;
-                bytes = bytes.subspan(static_cast<size_t>(sent));
-            }
-            return true;
-        });
-        _exit(0);
-    }
-    close(ends[1]);
-    std::array<std::byte, 65536> room;
-    for (ssize_t got = 0; (got = read(ends[0], room.data(), room.size())) > 0;)
-        run.sent.insert(run.sent.end(), room.begin(), room.begin() + got);
-    close(ends[0]);
-    int status = 0;
-    run.hasDied = child > 0 && waitpid(child, &status, 0) == child && status != 0;
-    return run;
+    ProcessRun run = RunInProcess(play);
+    return {.hasDied = run.end == ProcessEnd::Died, .sent = std::move(run.sent)};
 }
 
 int ReplayFile(const Command& command) {
@@ -98,6 +67,7 @@ int ShrinkFile(const Command& command) {
     if (out.empty())
         out =
             command.file.parent_path() / (command.file.stem().string() + ".small" + command.file.extension().string());
+    if (const Status writable = CheckWritable(out); !writable) return FailWith(writable.GetError().message);
     ThreadPool jobs(static_cast<uint32_t>(command.options.threads));
     ThreadPool several(static_cast<uint32_t>(std::max(command.options.threads, 4)));
     ShrinkSettings settings{.jobs = {&jobs}};
@@ -111,11 +81,10 @@ int ShrinkFile(const Command& command) {
     };
     const Result<ShrinkReport> report = Shrink(recording.Value(), FailureOf(command.shrink), settings);
     if (!report) return FailWith(command.file.string() + ": " + report.GetError().message);
-    std::ofstream stream(out, std::ios::binary);
     const std::vector<std::byte>& bytes = report.Value().recording;
-    stream.write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
-    stream.close();
-    if (!stream) return FailWith(out.string() + ": it cannot be written");
+    if (const Status written = WriteWholeFile(out, {{reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
+        !written)
+        return FailWith(written.GetError().message);
     std::printf("%s: %s\n%s: %s, found in %zu replays\n", command.file.c_str(), SizeText(report.Value().before).c_str(),
                 out.c_str(), SizeText(report.Value().after).c_str(), report.Value().replays);
     return 0;

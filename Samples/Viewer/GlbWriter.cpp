@@ -1,8 +1,8 @@
 #include <Fulcrum/Samples/Viewer/GlbWriter.h>
 
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Samples/Viewer/GlbBuffer.h>
 #include <Fulcrum/Samples/Viewer/ShapeMesh.h>
-#include <Fulcrum/Samples/Viewer/WholeFile.h>
 
 #include <algorithm>
 #include <cmath>
@@ -295,7 +295,7 @@ Status WriteGlb(const Recording& recording, const std::filesystem::path& path) {
                      "cannot write " + path.string() + ": " + std::to_string(length) + " bytes do not fit into a .glb"};
     const std::string header = "glTF" + LittleEndian(2) + LittleEndian(length) + LittleEndian(text.size()) + "JSON";
     const std::string binaryHeader = binary.empty() ? "" : LittleEndian(binary.size()) + std::string("BIN\0", 4);
-    return WriteWholeFile(path, {header, text, binaryHeader, binary});
+    return WriteWholeFile(path, {header, text, binaryHeader, binary}, MissingFolders::AreCreated);
 }
 
 }  // namespace fulcrum

@@ -1,9 +1,10 @@
 // Plots of the accuracy lab as one picture: node curves.mjs REPORT OUTPUT.svg SCENE... REPORT is a report.html of
 // ./fulcrum accuracy. Costs are traversals of constraints, the same on every machine. CHROMIUM names the browser.
-import { writeFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { launch } from './test/browser.mjs';
+
+import { writeWholeFile } from '../../Docs/wholeFile.mjs';
 
 const COLUMNS = 2, WIDTH = 580, HEIGHT = 340, TITLE = 26, GAP = 12; // px
 
@@ -44,7 +45,7 @@ try {
     return `<text x="${left + 12}" y="${top + 16}"><tspan font-weight="bold">${escape(scenes[i])}</tspan>  ${escape(error)}</text>
 ${svg.replace('<svg ', `<svg x="${left}" y="${top + TITLE}" `)}`;
   });
-  writeFileSync(output, `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}">
+  writeWholeFile(output, `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${width} ${height}" width="${width}" height="${height}">
 <title>Error against cost: ${scenes.map(escape).join(', ')}</title>
 <rect width="${width}" height="${height}" fill="white"/>
 <g font-family="system-ui, sans-serif" font-size="13" fill="#1d2733">

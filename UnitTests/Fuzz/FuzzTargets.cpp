@@ -8,9 +8,9 @@ namespace fulcrum::testing {
 
 std::span<const FuzzTarget> FuzzTargets() {
     static const std::array kTargets = {
-        kShapeFileTarget, kHullTarget, kMeshTarget, kSnapshotTarget, kSnapshotDeltaTarget, kRecordingTarget,
+        kShapeFileTarget, kHullTarget, kMeshTarget,    kSnapshotTarget, kSnapshotDeltaTarget, kRecordingTarget,
 #ifdef FULCRUM_HAS_ASSETS
-        kSceneTarget,
+        kSceneTarget,     kCborTarget, kRagdollTarget,
 #endif
         kProgramTarget,
     };

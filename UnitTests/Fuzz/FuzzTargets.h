@@ -25,7 +25,7 @@ std::span<const FuzzTarget> FuzzTargets();
 
 // A table of targets per file.
 extern const FuzzTarget kShapeFileTarget, kHullTarget, kMeshTarget, kSnapshotTarget, kSnapshotDeltaTarget,
-    kRecordingTarget, kSceneTarget, kProgramTarget;
+    kRecordingTarget, kSceneTarget, kCborTarget, kRagdollTarget, kProgramTarget;
 
 // Ends the process with a message where a promise is broken.
 void Promise(bool holds, const char* what);

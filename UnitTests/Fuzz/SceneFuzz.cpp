@@ -1,9 +1,13 @@
-// Scene files: JSON that is accepted makes a scene that steps, and is written to JSON that reads the same.
+// Scene files: what is accepted, JSON or CBOR, makes a scene that steps, and is written to JSON that reads the same.
+// Ragdoll files likewise.
 #ifdef FULCRUM_HAS_ASSETS
 
+#include <Fulcrum/Assets/RagdollJson.h>
 #include <Fulcrum/Assets/SceneFile.h>
 #include <Fulcrum/UnitTests/Fuzz/FuzzTargets.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <nlohmann/json.hpp>
 
 #include <string>
 
@@ -11,17 +15,17 @@ namespace fulcrum::testing {
 
 namespace {
 
-void RunScene(std::span<const uint8_t> bytes) {
-    const std::string text(bytes.begin(), bytes.end());
-    // Scenes may name files; those of this machine are none of its business.
-    const auto scene = SceneFromJson(text, "/nowhere");
+// Scenes may name files; those of this machine are none of its business.
+constexpr const char* kFolder = "/nowhere";
+
+void Use(const Result<SceneDescription>& scene) {
     if (!scene) {
         Promise(!scene.GetError().message.empty(), "an error says what is wrong");
         return;
     }
     const auto written = SceneToJson(scene.Value());
     if (written) {
-        const auto again = SceneFromJson(written.Value(), "/nowhere");
+        const auto again = SceneFromJson(written.Value(), kFolder);
         Promise(static_cast<bool>(again), "what was written can be read");
         Promise(SceneToJson(again.Value()).Value() == written.Value(), "what was read is written the same");
     }
@@ -30,6 +34,29 @@ void RunScene(std::span<const uint8_t> bytes) {
     for (int step = 0; step < 2; ++step) static_cast<void>(system.Value()->Update(scene.Value().dt));
     system.Value()->VisitBodies(
         [&](BodyId id) { Promise(IsFinite(system.Value()->Bodies().GetPose(id).position), "bodies stay finite"); });
+}
+
+std::string TextOf(std::span<const uint8_t> bytes) { return {bytes.begin(), bytes.end()}; }
+
+void RunScene(std::span<const uint8_t> bytes) { Use(SceneFromJson(TextOf(bytes), kFolder)); }
+void RunCbor(std::span<const uint8_t> bytes) { Use(SceneFromCbor(TextOf(bytes), kFolder)); }
+
+void RunRagdoll(std::span<const uint8_t> bytes) {
+    const auto json = nlohmann::ordered_json::parse(bytes, nullptr, false);
+    const auto ragdoll = RagdollFromJson(json);
+    if (!ragdoll) {
+        Promise(!ragdoll.GetError().message.empty(), "an error says what is wrong");
+        return;
+    }
+    const auto written = RagdollToJson(ragdoll.Value());
+    if (written) {
+        const auto again = RagdollFromJson(written.Value());
+        Promise(static_cast<bool>(again), "what was written can be read");
+        Promise(RagdollToJson(again.Value()).Value() == written.Value(), "what was read is written the same");
+    }
+    TestWorld world;
+    if (auto created = Ragdoll::Create(world.System(), ragdoll.Value(), {})) world.Steps(2);
+    Promise(world.AllFinite(), "bodies stay finite");
 }
 
 std::vector<FuzzBytes> SeedsOfScenes() {
@@ -54,8 +81,30 @@ std::vector<FuzzBytes> SeedsOfScenes() {
     return seeds;
 }
 
+std::vector<FuzzBytes> SeedsOfCbor() {
+    std::vector<FuzzBytes> seeds;
+    for (const FuzzBytes& seed : SeedsOfScenes())
+        seeds.push_back(nlohmann::ordered_json::to_cbor(nlohmann::ordered_json::parse(seed)));
+    return seeds;
+}
+
+std::vector<FuzzBytes> SeedsOfRagdolls() {
+    const std::string text = R"({"parts": [
+        {"name": "pelvis", "body": {"shape": {"kind": "Capsule", "halfHeight": 0.08, "radius": 0.12}}},
+        {"name": "torso", "parent": "pelvis", "body": {"shape": {"kind": "Box", "halfExtents": [0.2, 0.3, 0.1]},
+            "position": [0, 0.4, 0]},
+         "joint": {"kind": "SwingTwist", "anchorA": {"point": [0, 0.1, 0], "axis": [0, 1, 0]},
+                   "twist": {"limited": true, "limits": {"min": -0.3, "max": 0.3}}}},
+        {"name": "head", "parent": "torso", "body": {"shape": {"kind": "Sphere", "radius": 0.1}, "position": [0, 0.9, 0]},
+         "joint": {"kind": "Cone", "anchorA": {"point": [0, 0.75, 0]}, "halfAngle": 0.5}}]})";
+    EXPECT_TRUE(RagdollFromJson(nlohmann::ordered_json::parse(text)));
+    return {FuzzBytes(text.begin(), text.end())};
+}
+
 }  // namespace
 
+const FuzzTarget kCborTarget{"scene-cbor", RunCbor, SeedsOfCbor, 1500};
+const FuzzTarget kRagdollTarget{"ragdoll", RunRagdoll, SeedsOfRagdolls, 1500};
 const FuzzTarget kSceneTarget{"scene", RunScene, SeedsOfScenes, 1500};
 
 }  // namespace fulcrum::testing

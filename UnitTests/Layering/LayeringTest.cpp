@@ -35,6 +35,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedFolders = {
 // The same among the parts of Physics: the folders in it, and the files beside these, which are its interfaces. Every
 // folder stands here.
 const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
+    {"Physics/Files", {}},
     {"Physics/World", {}},
     {"Physics/Joints", {}},
     {"Physics/Stages", {"Physics/World"}},
@@ -44,7 +45,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
     {"Physics/Ragdoll", {"Physics", "Physics/Joints"}},
     {"Physics/Fields", {"Physics"}},
     {"Physics/Drawing", {"Physics"}},
-    {"Physics/Recording", {"Physics", "Physics/Joints"}},
+    {"Physics/Recording", {"Physics", "Physics/Joints", "Physics/Files"}},
 };
 // Headers that the parts below may include, too: plain data, what users derive from, checks of what they pass in. They
 // include nothing else of Physics.

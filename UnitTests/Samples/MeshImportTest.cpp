@@ -313,5 +313,26 @@ TEST_F(MeshGrounds, BodiesLandOnTheSheet) {
     }
 }
 
+// assimp's reader of RAW files leaves nodes out, and crashed what followed them.
+TEST_F(MeshFiles, WhoseNodesAreMissingHaveAllTheirMeshes) {
+    const fs::path file = Write("two.raw", "a\n0 0 0 0 0 2 2 0 0\n\nb\n0 0 0 2 0 0 0 2 0\n");
+    const auto mesh = ImportMesh(file, {.scale = 1});
+    ASSERT_TRUE(mesh) << mesh.GetError().message;
+    EXPECT_EQ(mesh.Value().mesh->TriangleCount(), 2u);
+}
+
+// They crash assimp 5.2: polygons and vertices that are announced and do not come.
+TEST_F(MeshFiles, ThatCrashTheirReaderAreErrors) {
+    const std::string head =
+        "element vertex 400\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 200\nproperty list uchar int vertex_indices\nend_header\n";
+    for (const fs::path& file : {Write("text.ply", "ply\nformat ascii 1.0\n" + head + "0 0 0\n1 0 0\n0 1 "),
+                                 Write("binary.ply", "ply\nformat binary_little_endian 1.0\n" + head + "xxxxyyyyzzzz"),
+                                 Write("cut.off", "OFF\n8 6 12\n0 0 0\n1 0 0\n")}) {
+        EXPECT_NE(Complaint(file).find(file.string()), std::string::npos);
+        EXPECT_FALSE(ImportMesh(file));
+    }
+}
+
 }  // namespace
 }  // namespace fulcrum

@@ -1,6 +1,8 @@
 // Writes the types of all settings, out of the schema of scene files, which the engine makes from its own fields:
 // node types.mjs SCHEMA OUTPUT. The schema uses a few words of JSON Schema; another one is an error here.
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
+
+import { writeWholeFile } from '../../Docs/wholeFile.mjs';
 
 const [input, output] = process.argv.slice(2);
 if (!output) {
@@ -41,4 +43,4 @@ const named = {
   WorldFields: schema.properties.settings, BodyFields: body, JointFields: { oneOf: joints }, MaterialFields: body.properties.material,
   MotorFields: control.motor, LimitFields: control.limits, SpringFields: control.limits.properties.spring,
 };
-writeFileSync(output, `// Written by types.mjs.\n${Object.entries(named).map(([name, node]) => `export type ${name} = ${typeOf(node)};\n`).join('')}`);
+writeWholeFile(output, `// Written by types.mjs.\n${Object.entries(named).map(([name, node]) => `export type ${name} = ${typeOf(node)};\n`).join('')}`);

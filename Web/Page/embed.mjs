@@ -1,7 +1,9 @@
 // Puts the modules of the engine into the bundled page: node embed.mjs BUNDLED DIST OUTPUT. Called by CMake.
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { deflateSync } from 'node:zlib';
+
+import { writeWholeFile } from '../../Docs/wholeFile.mjs';
 
 const [bundled, dist, output] = process.argv.slice(2);
 if (!output) {
@@ -13,4 +15,4 @@ const data = JSON.stringify({
   single: { script: packed('fulcrum.cjs'), wasm: packed('fulcrum.wasm') },
   threads: { script: packed('fulcrum-threads.cjs'), wasm: packed('fulcrum-threads.wasm'), worker: packed('fulcrum-threads.worker.js') },
 });
-writeFileSync(output, readFileSync(bundled, 'utf8').replace('@@FULCRUM_ENGINE@@', () => data));
+writeWholeFile(output, readFileSync(bundled, 'utf8').replace('@@FULCRUM_ENGINE@@', () => data));

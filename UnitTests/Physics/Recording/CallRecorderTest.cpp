@@ -1,7 +1,9 @@
 // Every call that changes the world is recorded, and recording changes nothing.
 #include <Fulcrum/Collision/Shapes/CustomConvex.h>
+#include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Physics/Recording/PublicCalls.h>
 #include <Fulcrum/UnitTests/Physics/Recording/RecordedProgram.h>
+#include <Fulcrum/UnitTests/Support/FullDisk.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/PublicHeaders.h>
 
@@ -199,6 +201,43 @@ public:
 private:
     float radius_;
 };
+
+// Of a disk that is full from the beginning, and of one that is full later.
+TEST(CallRecorder, LeavesAnOlderFileWhereItCannotWriteItsBeginning) {
+    const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "full_disk_test.calls";
+    ASSERT_TRUE(WriteWholeFile(file, {"older"}));
+    {
+        TestWorld world;
+        const FullDisk disk(100);
+        EXPECT_FALSE(CallRecorder::ToFile(world.System(), file.string()));
+    }
+    EXPECT_EQ(ReadWholeFile(file).Value(), "older");
+    EXPECT_FALSE(CallRecording::ReadFile(file.string()));
+    {
+        TestWorld world;
+        const FullDisk disk(10'000);
+        const auto recorder = CallRecorder::ToFile(world.System(), file.string());
+        ASSERT_TRUE(recorder) << recorder.GetError().message;
+        for (int i = 0; i < 500 && recorder.Value()->GetStatus(); ++i) world.Step();
+        EXPECT_FALSE(recorder.Value()->GetStatus());
+    }
+    const auto recording = CallRecording::ReadFile(file.string());
+    ASSERT_TRUE(recording) << recording.GetError().message;
+    EXPECT_FALSE(recording.Value().IsComplete());
+    EXPECT_GT(recording.Value().Steps(), 10u);
+    std::filesystem::remove(file);
+}
+
+TEST(CallRecording, OfWhatIsNoFileIsAnError) {
+    TestWorld world;
+    for (const std::string& file : {::testing::TempDir(), std::string("/dev/zero"), std::string("/nowhere/a.calls")}) {
+        const auto recording = CallRecording::ReadFile(file);
+        ASSERT_FALSE(recording) << file;
+        EXPECT_TRUE(recording.GetError().message.starts_with(file)) << recording.GetError().message;
+    }
+    for (const std::string& file : {::testing::TempDir(), std::string("/dev/full"), std::string("/nowhere/a.calls")})
+        EXPECT_EQ(CallRecorder::ToFile(world.System(), file).GetError().code, ErrorCode::Unsupported) << file;
+}
 
 TEST(CallRecorder, NamesCustomShapesByTheirContent) {
     const ShapePtr lens = CreateCustom<Lens>(0.4f).Value(), other = CreateCustom<Lens>(0.5f).Value();
