@@ -57,8 +57,9 @@ void AddRest(const RunFigures& figures, std::vector<ReportLine>& lines) {
         add("all asleep", figures.sleep->seconds ? Text("after %.4g s", *figures.sleep->seconds)
                                                  : Text("never within %.4g s", figures.sleep->limit));
     if (figures.energyRise)
-        add("energy from nothing",
-            Energy(figures.energyRise->joules) + Text(", %.3g of that at the start", figures.energyRise->relative));
+        add("energy from nothing", Energy(figures.energyRise->joules) +
+                                       Text(", %.2g %% of that at the start, %s", 100 * figures.energyRise->relative,
+                                            JudgementOf(figures.energyRise->relative)));
 }
 
 void AddErrors(const ErrorFigures& errors, std::vector<ReportLine>& lines) {
@@ -89,6 +90,11 @@ void AddRemarks(const RunFigures& figures, std::vector<ReportLine>& lines) {
 }
 
 }  // namespace
+
+const char* JudgementOf(double relative) {
+    if (relative <= 0.01) return "good";
+    return relative <= 0.1 ? "fair" : "poor";
+}
 
 AccuracyVerdict VerdictOf(const Scene& scene, const RunFigures& figures) {
     if (!scene.accuracy || !scene.accuracyRange || figures.steps != StepsIn(scene.steps / 60.0, figures.dt))
@@ -152,8 +158,9 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
     add("Result", "deepest for its size",
         figures.overlapPair.empty()
             ? "none"
-            : Text("%.3g of the inner radius, %.2f mm, %s at step %d", figures.overlap.relative,
-                   1000 * figures.overlap.depth, figures.overlapPair.c_str(), figures.overlap.step));
+            : Text("%.2g %% of the inner radius, %s, %.2f mm, %s at step %d", 100 * figures.overlap.relative,
+                   JudgementOf(figures.overlap.relative), 1000 * figures.overlap.depth, figures.overlapPair.c_str(),
+                   figures.overlap.step));
     add("Result", "energy",
         Energy(figures.energyAtStart) + " to " + Energy(figures.energyAtEnd) + ", springs included");
     AddRest(figures, lines);

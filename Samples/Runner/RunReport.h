@@ -17,6 +17,10 @@ std::vector<ReportLine> ReportLines(const Scene& scene, const RunFigures& figure
 // Lines of text with a heading for each section.
 std::string ReportText(const std::vector<ReportLine>& lines);
 
+// A word for an error relative to what it is measured by: "good" up to a hundredth, which nobody sees, "fair" up to a
+// tenth, beyond that "poor".
+const char* JudgementOf(double relative);
+
 // Whether the accuracy figure is where the scene says. Unknown: the scene has no threshold, or the run is shorter or
 // longer than the one that it is for.
 enum class AccuracyVerdict : uint8_t { Unknown, Pass, Fail };

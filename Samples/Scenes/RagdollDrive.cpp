@@ -72,7 +72,12 @@ extern const Scene kScene{
     .description =
         "four ragdolls take the same poses: by motors (one hung up, one floating), by velocities, kinematically",
     .steps = 300,
-    .view = {.color = ColorMode::Plain, .from = {0.35f, 0.2f, 1}, .showsJoints = false},
+    // All four with their arms and legs wherever the poses put them.
+    .view = {.color = ColorMode::Plain,
+             .from = {0.35f, 0.2f, 1},
+             .lower = {-3.25, 0.1, -0.6},
+             .upper = {3.25, 2.35, 0.6},
+             .showsJoints = false},
     .build = Build,
     .beforeStep = BeforeStep,
     .accuracy = Accuracy,

@@ -203,6 +203,23 @@ TEST(RestFigures, AreThoseOfABoxThatSlidesUntilItRests) {
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+TEST(RestFigures, AreJudgedByWhatTheyAreRelativeTo) {
+    const auto run = RunSliding(kSliding, 12);
+    ASSERT_TRUE(run);
+    RunFigures figures = run.Value();
+    for (const auto& [relative, word] : {std::pair(0.0007, "613.6 kJ, 0.07 % of that at the start, good"),
+                                         {0.01, "1 % of that at the start, good"},
+                                         {0.02, "2 % of that at the start, fair"},
+                                         {0.2, "20 % of that at the start, poor"}}) {
+        figures.energyRise = EnergyRise{613.6e3, relative};
+        figures.overlapPair = "box 1 and box 2";
+        figures.overlap.relative = relative;
+        const std::string text = ReportText(ReportLines(kSliding, figures, 1));
+        EXPECT_NE(text.find(word), std::string::npos) << text;
+        EXPECT_NE(text.find(std::string("of the inner radius, ") + JudgementOf(relative)), std::string::npos) << text;
+    }
+}
+
 TEST(RestFigures, TheSpeedIsThatOfTheLastSecondOfAShortRun) {
     const auto run = RunSliding(kSliding, 12);
     ASSERT_TRUE(run);

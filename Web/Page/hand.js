@@ -5,6 +5,8 @@ const REACH = 1e4;           // m
 const STRENGTH = 60;         // of the body's weight in gravity 9.81: the largest force along an axis
 const SHOT_SPEED = 30;       // of the ball's radius times its own rate, see shoot
 const BALLS_RADIUS = 0.75;   // of the radius of a typical body
+const APART = 2.1;           // radii from one ball to the next, where they are shot one right after the other
+const MOST_IN_LINE = 20;
 
 export class Hand {
   // `place`: around the canvas. `get`: { world, stage, origin, typical } as they are now.
@@ -90,7 +92,8 @@ export class Hand {
     places.needsUpdate = true;
   }
 
-  // A heavy ball from the camera to where the pointer is, fast enough to be there within half a second.
+  // A heavy ball from the camera to where the pointer is, fast enough to be there within half a second. While the last one is still
+  // where it begins, it follows behind that; undefined: there is no room.
   shoot() {
     const { world, stage, origin, typical } = this.get();
     stage.camera.updateMatrixWorld();
@@ -98,10 +101,12 @@ export class Hand {
     const { origin: from, direction } = this.raycaster.ray;
     const radius = BALLS_RADIUS * typical, distance = stage.camera.position.distanceTo(stage.controls.target);
     const speed = Math.max(SHOT_SPEED * radius, 2.5 * distance);
-    const start = from.clone().addScaledVector(direction, 0.25 * distance);
-    return world.bodies.create({
-      shape: { kind: 'Sphere', radius }, density: 4000, continuous: 'LinearAndAngular',
-      position: start.toArray().map((x, k) => x + origin[k]), linearVelocity: direction.toArray().map((x) => speed * x), maxLinearSpeed: Math.max(1000, 2 * speed),
+    const shape = { kind: 'Sphere', radius };
+    const places = Array.from({ length: MOST_IN_LINE }, (_, i) => from.clone()
+      .addScaledVector(direction, 0.25 * distance - i * APART * radius).toArray().map((x, k) => x + origin[k]));
+    const position = places.find((place) => world.queries.findOverlaps({ shape, position: place }).length === 0);
+    return position && world.bodies.create({
+      shape, density: 4000, continuous: 'LinearAndAngular', position, linearVelocity: direction.toArray().map((x) => speed * x), maxLinearSpeed: Math.max(1000, 2 * speed),
     });
   }
 }

@@ -256,6 +256,7 @@ function publish(page) {
     get world() { return page.world; },
     get steps() { return page.steps; },
     get report() { return page.report; },
+    get typical() { return page.stage.subject.typical; }, // radius of a body, m
     get isHolding() { return page.hand.isHolding; },
     // What the viewer's parts have of it: the joints' states, the labels, what the scene draws.
     get picture() { return { joints: page.joints, labels: page.labels, drawings: page.drawings, live: page.live }; },

@@ -1,6 +1,6 @@
 // Live curves of the last steps: cost and errors, with a mark where settings were changed.
 import uPlot from 'uplot';
-import { short } from '../../Samples/Viewer/Page/curves.js';
+import { LOGARITHMIC, LOGARITHMIC_AXIS, logButton, positive, short } from '../../Samples/Viewer/Page/curves.js';
 
 const HEIGHT = 92; // pixels of a plot
 const MOST = 600;  // steps that are shown
@@ -8,7 +8,7 @@ export const PLOTS = [
   { id: 'ms', title: 'Cost', unit: 'ms a step', color: '#3b78c9', of: (report) => report.totalMs },
   { id: 'penetration', title: 'Largest penetration', unit: 'mm', color: '#c0504d', of: (report) => 1000 * report.largestPenetration },
   { id: 'joint-error', title: 'Largest joint error', unit: 'mm', color: '#d9822b', of: (report) => 1000 * report.largestJointError },
-  { id: 'energy', title: 'Energy', unit: 'J', color: '#3f9e66', of: (report, world) => world.energy },
+  { id: 'energy', title: 'Energy', unit: 'J', color: '#3f9e66', isSigned: true, of: (report, world) => world.energy },
   { id: 'momentum', title: 'Momentum error', unit: 'kg m/s', color: '#8163c1', of: (report) => report.errors.momentumError },
 ];
 
@@ -23,6 +23,7 @@ function topOf(values) {
 export class Plots {
   constructor(place) {
     this.place = place;
+    this.logs = new Set(); // ids of plots that are logarithmic
     this.clear();
   }
 
@@ -70,7 +71,7 @@ export class Plots {
     if (!this.isStale || !this.charts) return;
     this.isStale = false;
     this.charts.forEach(({ chart, value }, i) => {
-      chart.setData([this.times, this.values[i]]);
+      chart.setData([this.times, this.logs.has(PLOTS[i].id) ? positive(this.values[i]) : this.values[i]]);
       value.textContent = this.values[i].length > 0 ? short(this.values[i].at(-1)) : '';
     });
   }
@@ -79,22 +80,33 @@ export class Plots {
     const figure = Object.assign(document.createElement('figure'), { className: 'curve', id: `curve-${plot.id}` });
     const caption = document.createElement('figcaption');
     const value = document.createElement('output');
+    const isLog = this.logs.has(plot.id);
     caption.append(Object.assign(document.createElement('b'), { textContent: plot.title }), ` ${plot.unit} `, value);
+    if (!plot.isSigned) caption.append(logButton(isLog, () => this.#setLog(plot.id, !isLog)));
     const box = document.createElement('div');
     figure.append(caption, box);
     this.place.append(figure);
     const axis = { stroke: ink, grid: { stroke: line, width: 1 }, ticks: { show: false }, font: '10px system-ui, sans-serif' };
     const chart = new uPlot({
       width: this.#width, height: HEIGHT, legend: { show: false }, padding: [6, 6, 0, 0], cursor: { show: false },
-      scales: { x: { time: false }, y: { range: ({ data }, low, high) => (low >= 0 ? [0, 1.06 * topOf(data[1])] : uPlot.rangeNum(low, high, 0.06, true)) } },
+      scales: { x: { time: false }, y: isLog ? LOGARITHMIC : {
+        range: ({ data }, low, high) => (low >= 0 ? [0, 1.06 * topOf(data[1])] : uPlot.rangeNum(low, high, 0.06, true)),
+      } },
       axes: [
         { ...axis, size: 18, gap: 2, space: 46, values: (_, splits) => splits.map((at) => `${short(at)} s`) },
-        { ...axis, size: 44, gap: 3, space: 22, values: (_, splits) => splits.map(short) },
+        { ...axis, size: 44, gap: 3, space: 22, values: (_, splits) => splits.map(short), ...(isLog ? LOGARITHMIC_AXIS : {}) },
       ],
       series: [{}, { stroke: plot.color, width: 1.4, points: { show: false } }],
       hooks: { draw: [(drawn) => this.#drawMarks(drawn, ink)] },
     }, [[], []], box);
     return { chart, value };
+  }
+
+  #setLog(id, isLog) {
+    if (isLog) this.logs.add(id);
+    else this.logs.delete(id);
+    this.build();
+    this.draw();
   }
 
   #drawMarks({ ctx, bbox, valToPos }, ink) {

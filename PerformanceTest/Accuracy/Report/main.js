@@ -1,6 +1,6 @@
 // The report of the accuracy lab: a plot per scene. Plots are drawn when they come into view: a full grid has 10^5 runs.
 import * as Plot from '@observablehq/plot';
-import { drawnOf, labelsOf } from './points.mjs';
+import { PLOT, drawnOf, labelsOf, placesOfLabels } from './points.mjs';
 
 const data = JSON.parse(document.getElementById('runs').textContent);
 // report.html?scenes=tower,pendulum&cost=traversals_per_second: these plots alone, for pictures.
@@ -19,13 +19,13 @@ const FAMILIES = [
   { name: 'target', label: 'AccuracyTarget', color: '#c8102e' },
   ...(data.peer ? [{ name: data.peer.family, label: data.peer.engine, color: '#7a5c00' }] : []),
 ].filter(({ name }) => data.scenes.some(({ runs }) => runs.some(({ family }) => family === name)));
-// Where the labels of presets stand, so that those of runs side by side do not cover each other.
+// What the runs of presets are called, the first with the best place.
 const PRESETS = {
-  fast: { text: () => 'fast', textAnchor: 'end', dx: -10 },
-  balanced: { text: () => 'default', dy: -14, fontWeight: 'bold' },
-  accurate: { text: () => 'accurate', dy: 15 },
-  reference: { text: () => 'reference', textAnchor: 'end', dx: 6, dy: -14 },
-  default: { text: ({ engine }) => firstWordOf(engine), dy: 15 },  // another engine's
+  balanced: () => 'default',
+  fast: () => 'fast',
+  accurate: () => 'accurate',
+  reference: () => 'reference',
+  default: ({ engine }) => firstWordOf(engine),  // another engine's
 };
 const firstWordOf = (text) => text.split(' ')[0];
 const colorOf = (family) => FAMILIES.find(({ name }) => name === family).color;
@@ -49,13 +49,16 @@ function draw(card, scene) {
   const peers = isSelf ? [] : peerLines(scene, metric);
   const { points, envelope, curves, top, bottom, left, right } = drawnOf(scene, { cost, metric, peers: peers.map(({ error }) => error) });
   const at = { x: 'cost', y: 'error' };
+  const presets = Object.entries(PRESETS).flatMap(([name, textOf]) =>
+    points.filter(({ preset }) => preset === name).map((point) => ({ point, text: textOf(point) })));
   const isMain = !isSelf && metric === Object.keys(scene.runs[0].errors)[0];
   const plot = Plot.plot({
-    width: 580,
-    height: 340,
-    marginLeft: 58,
-    marginRight: 92,
-    marginBottom: 42,
+    width: PLOT.width,
+    height: PLOT.height,
+    marginLeft: PLOT.left,
+    marginRight: PLOT.right,
+    marginTop: PLOT.top,
+    marginBottom: PLOT.bottom,
     style: { fontSize: '11.5px', background: 'transparent' },
     x: { type: 'log', domain: [left, right], grid: true, label: cost === 'us_per_second' ? 'µs of work per simulated second →' : 'traversals per simulated second →', ticks: 5, tickFormat: '~s' },
     y: { type: 'log', domain: [bottom, top], grid: true, label: isSelf ? '↑ difference from the finest setting' : `↑ ${metric}`, ticks: 6, tickFormat: (y) => y.toExponential(0).replace('e+', 'e') },
@@ -67,7 +70,10 @@ function draw(card, scene) {
       curves.map(({ family, points: best }) => Plot.line(best, { ...at, stroke: colorOf(family), strokeWidth: 1.6, className: `curve ${family}` })),
       Plot.dot(points, { ...at, fill: ({ family }) => colorOf(family), r: points.length > 200 ? 2 : 3.6, symbol: 'kind', fillOpacity: points.length > 200 ? 0.5 : 0.9, className: 'runs' }),
       Plot.dot(points.filter(({ preset }) => preset), { ...at, r: 6.5, stroke: '#1d2733', strokeWidth: 1.4, className: 'presets' }),
-      Object.entries(PRESETS).map(([name, place]) => Plot.text(points.filter(({ preset }) => preset === name), { ...at, ...place, fill: '#1d2733', stroke: 'white', strokeWidth: 3 })),
+      placesOfLabels(presets, { left, right, top, bottom }).map(({ point, text, textAnchor, dx, dy }) => Plot.text([point], {
+        ...at, text: [text], textAnchor, dx, dy, fill: '#1d2733', stroke: 'white', strokeWidth: 3, fontWeight: point.preset === 'balanced' ? 'bold' : undefined,
+        className: 'preset-label',
+      })),
       Plot.tip(points, Plot.pointer({ ...at, title: 'title', maxRadius: 30, lineHeight: 1.3, className: 'hover' })),
       // Above what hovering shows, which a click makes stay.
       Plot.dot(points.filter(({ recording }) => recording), { ...at, r: 6.5, fill: 'transparent', href: 'recording', target: '_blank', className: 'recordings' }),

@@ -85,3 +85,46 @@ export function drawnOf(scene, { cost, metric, peers = [] }) {
     right: Math.max(...costs) * 1.2,
   };
 }
+
+// Of a plot in pixels: its size and what is beside its frame.
+export const PLOT = { width: 580, height: 340, left: 58, right: 92, top: 26, bottom: 42 };
+const LETTER = 6.6, LINE = 14, RING = 8; // pixels: of the labels' letters, upper bounds, and around a preset's dot
+
+const boxOf = ({ x, y, textAnchor, dx, dy, text }) => {
+  const width = LETTER * text.length, left = x + dx - { start: 0, middle: 0.5, end: 1 }[textAnchor] * width;
+  return { left, right: left + width, top: y + dy - LINE / 2, bottom: y + dy + LINE / 2 };
+};
+const areaShared = (a, b) =>
+  Math.max(0, Math.min(a.right, b.right) - Math.max(a.left, b.left)) * Math.max(0, Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top));
+
+// Beside which side of its dot each label stands: [{ point, text, textAnchor, dx, dy }], so that labels cover neither each other, nor the
+// dots of others, nor what is beside the frame. `labels`: [{ point: { cost, error }, text }], the most important first.
+export function placesOfLabels(labels, { left, right, top, bottom }) {
+  const at = ({ cost, error }) => ({
+    x: PLOT.left + (Math.log(cost / left) / Math.log(right / left)) * (PLOT.width - PLOT.left - PLOT.right),
+    y: PLOT.top + (Math.log(top / error) / Math.log(top / bottom)) * (PLOT.height - PLOT.top - PLOT.bottom),
+  });
+  const around = [
+    { textAnchor: 'middle', dx: 0, dy: -15 }, { textAnchor: 'middle', dx: 0, dy: 16 },
+    { textAnchor: 'start', dx: 10, dy: 0 }, { textAnchor: 'end', dx: -10, dy: 0 },
+    ...[-15, 16].flatMap((dy) => [{ textAnchor: 'start', dx: -4, dy }, { textAnchor: 'end', dx: 4, dy }]),
+    ...[-29, 30].map((dy) => ({ textAnchor: 'middle', dx: 0, dy })),
+  ];
+  const rings = labels.map(({ point }) => {
+    const { x, y } = at(point);
+    return { left: x - RING, right: x + RING, top: y - RING, bottom: y + RING };
+  });
+  const placed = [];
+  labels.forEach((label, i) => {
+    const taken = rings.filter((_, k) => k !== i).concat(placed.map(boxOf));
+    const cost = (place) => {
+      const box = boxOf(place);
+      const outside = Math.max(0, PLOT.left - box.left) + Math.max(0, box.right - (PLOT.width - PLOT.right)) + Math.max(0, PLOT.top - LINE / 2 - box.top) +
+        Math.max(0, box.bottom - (PLOT.height - PLOT.bottom));
+      return LINE * outside + taken.reduce((sum, other) => sum + areaShared(box, other), 0);
+    };
+    const places = around.map((side) => ({ ...label, ...at(label.point), ...side }));
+    placed.push(places.reduce((best, place) => (cost(place) < cost(best) ? place : best)));
+  });
+  return placed;
+}

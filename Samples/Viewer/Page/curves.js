@@ -15,6 +15,32 @@ export function short(value) {
   return String(digits(value));
 }
 
+// Whole decades around the values of a logarithmic plot, at most nine: what is below, such as rounding, is at its lower edge.
+export function decadesOf(low, high) {
+  if (!(high > 0)) return [0.1, 1];
+  const top = Math.ceil(Math.log10(high) + 1e-9), bottom = Math.floor(Math.log10(Math.max(low, 1e-9 * high)));
+  return [10 ** Math.min(bottom, top - 1), 10 ** top];
+}
+// Zeros have no place in it.
+export const positive = (values) => Array.from(values, (value) => (value > 0 ? value : null));
+// Whether a plot of these series may be logarithmic.
+export const hasLogarithm = ({ series, stacked }) => !stacked && series.every(({ values }) => values.every((value) => value >= 0));
+
+// A button in a plot's caption that makes its axis logarithmic.
+export function logButton(isOn, toggle) {
+  const button = Object.assign(document.createElement('button'), { type: 'button', className: 'log', textContent: 'log', title: 'Logarithmic axis' });
+  button.setAttribute('aria-pressed', isOn);
+  button.addEventListener('click', toggle);
+  return button;
+}
+export const LOGARITHMIC = { distr: 3, range: (_, low, high) => decadesOf(low, high) };
+// The numbers beside such an axis: powers of ten, at most five.
+export function splitsOf(low, high) {
+  const first = Math.round(Math.log10(low)), last = Math.round(Math.log10(high)), every = Math.ceil((last - first) / 4);
+  return Array.from({ length: Math.floor((last - first) / every) + 1 }, (_, i) => 10 ** (first + i * every));
+}
+export const LOGARITHMIC_AXIS = { splits: (_, axis, low, high) => splitsOf(low, high), filter: (_, splits) => splits };
+
 const isFlat = (values) => values.every((value) => value === 0);
 const scaled = (values, factor) => Array.from(values, (value) => value * factor);
 
@@ -69,6 +95,7 @@ export class Curves {
     this.plots = plotsOf(recording);
     this.actions = actions;
     this.shown = [];
+    this.logs = new Set(); // ids of plots that are logarithmic
     this.frame = 0;
   }
   get isEmpty() { return this.plots.length === 0; }
@@ -109,6 +136,8 @@ export class Curves {
     const caption = document.createElement('figcaption');
     caption.append(Object.assign(document.createElement('b'), { textContent: plot.title }));
     if (plot.unit) caption.append(` ${plot.unit}`);
+    const isLog = this.logs.has(plot.id);
+    if (hasLogarithm(plot)) caption.append(logButton(isLog, () => this.#setLog(plot.id, !isLog)));
     const keys = Object.assign(document.createElement('span'), { className: 'keys' });
     const values = plot.series.map(({ name }, i) => {
       const value = document.createElement('output');
@@ -121,16 +150,18 @@ export class Curves {
     figure.append(caption, keys, box);
     this.place.append(figure);
 
-    const drawn = plot.stacked ? stackedData(plot.series) : plot.series.map((series) => Array.from(series.values));
+    const drawn = plot.stacked ? stackedData(plot.series) : plot.series.map(({ values: all }) => (isLog ? positive(all) : Array.from(all)));
     const colorOf = (i) => COLORS[plot.stacked ? plot.series.length - 1 - i : i];
     const axis = { stroke: ink, grid: { stroke: line, width: 1 }, ticks: { show: false }, font: '10px system-ui, sans-serif' };
     const chart = new uPlot({
       width, height: HEIGHT, legend: { show: false }, padding: [6, 6, 0, 0],
       cursor: { y: false, points: { show: false }, drag: { x: false, y: false }, sync: { key: 'fulcrum', setSeries: false } },
-      scales: { x: { time: false }, y: { range: (_, low, high) => (plot.stacked || low >= 0 ? [0, high > 0 ? 1.06 * high : 1] : uPlot.rangeNum(low, high, 0.06, true)) } },
+      scales: { x: { time: false }, y: isLog ? LOGARITHMIC : {
+        range: (_, low, high) => (plot.stacked || low >= 0 ? [0, high > 0 ? 1.06 * high : 1] : uPlot.rangeNum(low, high, 0.06, true)),
+      } },
       axes: [
         { ...axis, size: 18, gap: 2, space: 46, values: (_, splits) => splits.map((at) => `${digits(at)} s`) },
-        { ...axis, size: 44, gap: 3, space: 22, values: (_, splits) => splits.map(short) },
+        { ...axis, size: 44, gap: 3, space: 22, values: (_, splits) => splits.map(short), ...(isLog ? LOGARITHMIC_AXIS : {}) },
       ],
       series: [{}, ...drawn.map((_, i) => ({ stroke: colorOf(i), width: 1.4, fill: plot.stacked ? colorOf(i) : undefined, points: { show: false } }))],
     }, [this.times, ...drawn], box);
@@ -139,6 +170,13 @@ export class Curves {
     this.#connect(chart);
     const culprit = plot.culprit && figure.appendChild(Object.assign(document.createElement('p'), { className: 'culprit' }));
     return { plot, chart, head, values, culprit };
+  }
+
+  #setLog(id, isLog) {
+    if (isLog) this.logs.add(id);
+    else this.logs.delete(id);
+    this.build();
+    requestAnimationFrame(() => this.update(this.frame)); // the plots know their places then
   }
 
   // A click, or dragging along the plot, goes to the moment under the pointer.

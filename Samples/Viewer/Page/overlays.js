@@ -61,6 +61,7 @@ export class Contacts {
     const buffer = (perContact) => new BufferAttribute(new Float32Array(perContact * most), 3).setUsage(DynamicDrawUsage);
     this.geometry = new BufferGeometry().setAttribute('position', buffer(3)).setAttribute('color', buffer(3));
     this.lineGeometry = new BufferGeometry().setAttribute('position', buffer(6));
+    for (const geometry of [this.geometry, this.lineGeometry]) geometry.setDrawRange(0, 0);
     const pixels = 7 * stage.renderer.getPixelRatio();
     this.points = new SeenThrough(stage, new Points(this.geometry, pointMaterial(IN_SIGHT, 1, pixels)),
       new Points(this.geometry, pointMaterial(HIDDEN, 0.16, 0.6 * pixels)));
@@ -68,15 +69,17 @@ export class Contacts {
     this.normals = new SeenThrough(stage, lines(IN_SIGHT, 1), lines(HIDDEN, 0.1));
   }
 
+  get isVisible() { return this.points.visible || this.normals.visible; }
+
   // `length`: of the normal of the largest impulse, meters.
   update(contacts, length) {
-    if (contacts === this.shown || (!this.points.visible && !this.normals.visible)) return;
+    if (contacts === this.shown) return;
     this.shown = contacts;
     const count = contacts?.count ?? 0;
     const places = this.geometry.attributes.position, colors = this.geometry.attributes.color, ends = this.lineGeometry.attributes.position;
-    if (count > 0) places.array.set(contacts.points);
+    if (count > 0) places.array.set(contacts.points.subarray(0, 3 * count));
     const color = new Color();
-    const largest = count > 0 ? contacts.impulses.reduce((a, b) => Math.max(a, b), 1e-9) : 1;
+    const largest = count > 0 ? contacts.impulses.subarray(0, count).reduce((a, b) => Math.max(a, b), 1e-9) : 1;
     for (let i = 0; i < count; ++i) {
       color.lerpColors(TOUCHING, OVERLAPPING, Math.min(1, Math.max(0, -contacts.separations[i] / OVERLAP_SHOWN_RED))).toArray(colors.array, 3 * i);
       const reach = length * (0.3 + 0.7 * Math.sqrt(contacts.impulses[i] / largest));

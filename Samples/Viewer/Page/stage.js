@@ -6,6 +6,7 @@ import {
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { GROUND } from './colors.js';
 import { OPAQUE, Occlusion } from './occlusion.js';
+import { ScaleBar } from './scaleBar.js';
 import { addGrid, addOcclusion } from './shaders.js';
 import { makeEnvironment, makeSky } from './sky.js';
 import { cornersOf } from './subject.js';
@@ -53,6 +54,7 @@ export class Stage {
     this.least = { leastSize: { value: 0 } };
     this.clock = { seconds: { value: 0 } };
     this.height = 1;
+    this.scaleBar = new ScaleBar(canvas.parentElement);
     if (isOccluded ?? !isSoftware) this.occlusion = new Occlusion(this.scene, this.camera, this.least);
     this.setTheme('light');
   }
@@ -156,7 +158,9 @@ export class Stage {
     this.camera.updateProjectionMatrix();
     this.scene.fog.near = distance + 2 * radius;
     this.scene.fog.far = distance + 18 * radius;
-    this.least.leastSize.value = (LEAST_PIXELS * 2 * Math.tan((this.camera.fov * Math.PI) / 360)) / this.height;
+    const perPixel = (2 * Math.tan((this.camera.fov * Math.PI) / 360)) / this.height; // of the distance
+    this.least.leastSize.value = LEAST_PIXELS * perPixel;
+    this.scaleBar.update(distance * perPixel);
     if (this.isEnvironmentOld) this.#renewEnvironment();
     this.occlusion?.update(this.renderer, this.subject.typical, distance);
     this.renderer.render(this.scene, this.camera);

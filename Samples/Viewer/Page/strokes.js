@@ -54,6 +54,7 @@ export class Lines extends Strokes {
     super();
     this.geometry = new LineSegmentsGeometry();
     this.#reserve();
+    this.geometry.instanceCount = 0; // until they are filled: else as many at the origin as there is room for
     const lines = (settings) => new LineSegments2(this.geometry, new LineMaterial({ toneMapped: false, ...settings }));
     const shown = { linewidth: pixels, vertexColors: true };
     this.pair = new SeenThrough(stage, lines({ ...shown, ...IN_SIGHT }), lines({ ...shown, ...HIDDEN, opacity: 0.75 }), order);
@@ -93,6 +94,7 @@ class Corners extends Strokes {
     super();
     this.geometry = new BufferGeometry();
     this.#reserve();
+    this.geometry.setDrawRange(0, 0);
   }
   end() {
     if (this.places.array !== this.reserved) this.#reserve();

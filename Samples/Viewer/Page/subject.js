@@ -87,11 +87,19 @@ export function findSubject(recording, timeline, moments = MOMENTS) {
     const { center, radius } = motions[body] === 1 ? ofRun : mobile;
     return radii[shapes[body]] < radius && Math.hypot(...placeOf(body).slice(0, 3).map((x, k) => x - center[k])) < AMONG * radius;
   };
-  const standing = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body)).flatMap((body) => {
+  const boxAround = (body) => {
     const lower = new Vector3().setScalar(Infinity), upper = new Vector3().setScalar(-Infinity);
     includeBody(recording, timeline, body, lower, upper);
     return Number.isFinite(lower.x) ? cornersOf(['x', 'y', 'z'].map((axis) => [lower[axis], upper[axis]])) : [];
-  });
+  };
+  const among = [...motions.keys()].filter((body) => motions[body] !== 2 && isAmong(body));
+  const standing = among.flatMap(boxAround), driven = among.filter((body) => motions[body] === 1 && recording.movers.includes(body));
+  // What is driven is in the picture wherever it goes among the others.
+  for (const moment of driven.length > 0 ? moments : []) {
+    timeline.seek(moment * timeline.lastFrame);
+    standing.push(...driven.filter((body) => timeline.isThere(body) && isAmong(body)).flatMap(boxAround));
+  }
+  timeline.seek(0);
   const overPulleys = recording.joints.flatMap(({ isRope, points }) => (isRope ? points.map((point) => [...point, 0]) : []));
   const seen = places.concat(standing, overPulleys);
   let ranges = rangesOf(seen), shown;

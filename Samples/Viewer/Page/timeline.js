@@ -62,6 +62,9 @@ export class Timeline {
     return Math.sqrt(velocities[at] ** 2 + velocities[at + 1] ** 2 + velocities[at + 2] ** 2); // a view and hypot take fifty times as long
   }
 
+  // The body's last sample at or before a whole frame.
+  sampleAt(body, frame) { return this.#search(body, frame); }
+
   // Those of the last frame at or before this one that recorded them; undefined where there is none.
   contacts() {
     let found;

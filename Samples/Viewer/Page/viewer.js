@@ -2,6 +2,7 @@
 import { Raycaster, Vector2, Vector3 } from 'three';
 import { Bodies } from './bodies.js';
 import { MODES, legend, setTheme, topSpeed } from './colors.js';
+import { contactsNow } from './contactsNow.js';
 import { Curves } from './curves.js';
 import { Drawings } from './drawings.js';
 import { Joints, MOST_WITH_LIMITS, jointLegend, jointSummary } from './joints.js';
@@ -198,7 +199,8 @@ export class Viewer {
   drawNow() {
     this.stage.clock.seconds.value = this.timeline.time;
     this.bodies.update(this.mode, this.top);
-    this.contacts.update(this.timeline.contacts(), 1.2 * this.stage.subject.typical);
+    const { typical } = this.stage.subject;
+    if (this.contacts.isVisible) this.contacts.update(contactsNow(this.timeline.contacts(), this.timeline, typical), 1.2 * typical);
     this.boxes.update();
     this.joints.update(this.selected);
     this.drawings.update(this.timeline.frame);

@@ -5,7 +5,7 @@ import { existsSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { drawnOf, envelopeOf, labelsOf } from '../../../PerformanceTest/Accuracy/Report/points.mjs';
+import { PLOT, drawnOf, envelopeOf, labelsOf, placesOfLabels } from '../../../PerformanceTest/Accuracy/Report/points.mjs';
 import { launch, newPage } from './browser.mjs';
 import { html } from './recording.mjs';
 
@@ -42,6 +42,32 @@ test('every scene has one plot with its runs, curves and presets', async () => {
       assert.ok(await plot.getByText(label, { exact: true }).isVisible(), `${name} has no ${label}`);
     }
   }
+});
+
+test('no label of a plot covers another', async () => {
+  for (const name of ['incline.slide', 'incline.stick']) {
+    const labels = await plotOf(name).locator('text').evaluateAll((all) => all.map((label) => {
+      const { left, right, top, bottom } = label.getBoundingClientRect();
+      return { text: label.textContent, left, right, top, bottom };
+    }));
+    const overlaps = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
+    for (const [i, a] of labels.entries()) for (const b of labels.slice(i + 1)) assert.ok(!overlaps(a, b), `${name}: ${a.text} on ${b.text}`);
+  }
+});
+
+test('labels find places beside crowded dots and at the edges', () => {
+  const edges = { left: 100, right: 10000, top: 1, bottom: 1e-4 };
+  const places = (points) => placesOfLabels(points.map(([cost, error, text]) => ({ point: { cost, error }, text })), edges);
+  // In the middle, above its dot.
+  assert.deepEqual(places([[1000, 1e-2, 'default']]).map(({ textAnchor, dx, dy }) => [textAnchor, dx, dy]), [['middle', 0, -15]]);
+  // At the left edge its label is not over the numbers of the axis, at the upper edge not over the frame's.
+  const [fast] = places([[101, 1e-3, 'fast']]);
+  assert.ok(fast.x + fast.dx - (fast.textAnchor === 'middle' ? 3.3 * 4 : 0) >= PLOT.left && fast.textAnchor !== 'end', JSON.stringify(fast));
+  const [high] = places([[1000, 0.99, 'default']]);
+  assert.ok(high.dy >= 0, JSON.stringify(high));
+  // Four at one place are all apart.
+  const four = places(['default', 'fast', 'accurate', 'reference'].map((text) => [1000, 1e-2, text]));
+  assert.equal(new Set(four.map(({ textAnchor, dx, dy }) => `${textAnchor} ${dx} ${dy}`)).size, 4);
 });
 
 test('hovering a run names its setting', async () => {

@@ -96,6 +96,17 @@ test('a shot adds a body that is drawn and hits', { timeout: 600000 }, async () 
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.evaluate(() => { window.fulcrum.shoot(); window.fulcrum.step(30); });
   assert.equal(await count(), before + 1);
+  // One right after the other, in a standing world: none in another.
+  const apart = await page.evaluate(() => {
+    const { world } = window.fulcrum, first = world.bodies.readAll().count;
+    for (let i = 0; i < 4; ++i) window.fulcrum.shoot();
+    const { count: last, positions } = world.bodies.readAll();
+    const places = Array.from({ length: last - first }, (_, i) => positions.slice(3 * (first + i), 3 * (first + i) + 3));
+    const radius = 0.75 * window.fulcrum.typical;
+    return places.flatMap((a, i) => places.slice(i + 1).map((b) => Math.hypot(...a.map((x, k) => x - b[k])) / radius));
+  });
+  assert.equal(apart.length, 6, 'each shot is a ball');
+  assert.ok(Math.min(...apart) > 2, `${apart}`);
   await page.close();
 });
 
