@@ -12,10 +12,11 @@ constexpr double kMicrosecondsPerMs = 1000 * 60;  // per second of frames of 1/6
 
 std::string LineOf(const RunRecord& run) {
     const std::string preset = run.setting.Preset();
-    char text[160];
-    std::snprintf(text, sizeof text, "%-20s error %.3g %%, %.4g ms a frame of 1/60 s%s%s%s", run.setting.Key().c_str(),
-                  100 * run.Error(), run.microseconds / kMicrosecondsPerMs, preset.empty() ? "" : " (preset ",
-                  preset.c_str(), preset.empty() ? "" : ")");
+    char error[32] = "not measured", text[160];
+    if (run.isMeasured) std::snprintf(error, sizeof error, "%.3g %%", 100 * run.Error());
+    std::snprintf(text, sizeof text, "%-20s error %s, %.4g ms a frame of 1/60 s%s%s%s", run.setting.Key().c_str(),
+                  error, run.microseconds / kMicrosecondsPerMs, preset.empty() ? "" : " (preset ", preset.c_str(),
+                  preset.empty() ? "" : ")");
     return text;
 }
 
@@ -55,7 +56,10 @@ std::string WhyNoLessError(std::span<const RunRecord> runs) {
 std::string Advice(const SceneRuns& scene, const RunRecord* chosen, const std::string& wish,
                    const std::string& whyNot) {
     const std::vector<size_t> envelope = Envelope(scene.runs);
-    std::string text = scene.scene->FullName() + ": " + scene.scene->what + "\nerror: " + scene.scene->error + "\n\n";
+    std::string text = scene.scene->FullName() + ": " + scene.scene->what + "\nerror: " + scene.scene->error + "\n";
+    if (std::ranges::none_of(scene.runs, &RunRecord::isMeasured))
+        text += "It is not measured here: in no step bodies touched, or a joint was off what it holds.\n";
+    text += "\n";
     if (envelope.empty()) return text + "No setting: all runs blew up.\n";
     if (!chosen) {
         text += "No setting of this grid has " + wish + ". The cheapest and the most exact one:\n  " +

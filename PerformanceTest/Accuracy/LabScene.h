@@ -72,6 +72,7 @@ public:
     std::vector<double> observed;
     std::vector<std::string> failedConditions;  // each once
     std::string worst;                          // what has the largest error, and when; empty: unknown
+    bool isMeasured = true;                     // false: no step had anything that the error is of, so it is 0
     bool isLost = false;                        // numbers of a peer were not finite: errors mean nothing
     Work work;
 };

@@ -124,6 +124,7 @@ void MeasureRuns(const LabScene& scene, bool isQuick, bool isTimedOnce, RunRecor
     record.traversals = setting.peer ? kNaN : record.traversals / std::max(simulated, 1e-9);
     record.effortReturns = runs[0].work.effortReturns;
     record.worst = runs[0].worst;
+    record.isMeasured = runs[0].isMeasured;
     record.timedRuns = static_cast<int>(microseconds.size());
     record.microseconds = Median(std::move(microseconds));
     record.blewUp = !(record.Error() <= scene.blowUp);
@@ -172,6 +173,7 @@ Json ToJson(const RunRecord& record) {
     json["timed_runs"] = record.timedRuns;
     if (!record.unsupported.empty()) json["unsupported"] = record.unsupported;
     if (!record.worst.empty()) json["worst"] = record.worst;
+    if (!record.isMeasured) json["is_measured"] = false;
     if (!record.recording.empty()) json["recording"] = record.recording;
     return json;
 }
@@ -203,6 +205,7 @@ Result<RunRecord> RecordFromJson(const Json& json) {
         record.failedConditions = json.at("failed_conditions").get<std::vector<std::string>>();
         record.unsupported = json.value("unsupported", "");
         record.worst = json.value("worst", "");
+        record.isMeasured = json.value("is_measured", true);
         record.blewUp = json.at("blew_up").get<bool>();
         record.seeds = json.at("seeds").get<int>();
         record.hash = json.at("hash").get<uint64_t>();

@@ -22,6 +22,7 @@ struct RunRecord {
     std::vector<double> observed;
     std::vector<std::string> failedConditions;  // of any seed
     std::string worst;                          // of the first seed, see LabRun
+    bool isMeasured = true;                     // likewise
     bool blewUp = false;                        // the main error is not finite, or beyond the scene's bound
     int seeds = 1;
     uint64_t hash = 0;

@@ -34,11 +34,11 @@ struct StepError {
     double value = 0;  // relative to the size of the smaller body
     BodyId bodyA, bodyB;
     JointId joint;
-    bool isGap = false;
+    bool isOfJoint = false;
     double time = 0;  // s
 };
 
-// The larger of the step's largest overlap and largest gap.
+// The largest of the step's overlaps and errors of joints. That of an angle is its arc at the outer radius.
 StepError ErrorOf(LabWorld& world) {
     const BodyInterface& bodies = world.Bodies();
     const StepReport& report = world.Ours("reports of steps").Report();
@@ -48,10 +48,11 @@ StepError ErrorOf(LabWorld& world) {
                       std::min(SizeOf(bodies, report.deepestA, true), SizeOf(bodies, report.deepestB, true));
     world.Joints().Visit([&](JointId id) {
         const BodyId a = world.Joints().GetBodyA(id), b = world.Joints().GetBodyB(id);
-        const double gap = static_cast<double>(world.Joints().GetError(id).distance) /
-                           std::min(SizeOf(bodies, a, false), SizeOf(bodies, b, false));
-        if (gap <= error.value) return;
-        error = {.value = gap, .bodyA = a, .bodyB = b, .joint = id, .isGap = true, .time = world.Time()};
+        const JointError apart = world.Joints().GetError(id);
+        const double gap = double{apart.distance} / std::min(SizeOf(bodies, a, false), SizeOf(bodies, b, false)),
+                     value = std::max(gap, double{apart.angle});
+        if (value <= error.value) return;
+        error = {.value = value, .bodyA = a, .bodyB = b, .joint = id, .isOfJoint = true, .time = world.Time()};
     });
     return error;
 }
@@ -72,7 +73,7 @@ std::string TextOf(const StepError& error, const SceneIds& ids) {
         return id == kWorldBody ? "the world" : NameOf("body", id, ids.bodies, theScene.description.bodies);
     };
     const std::string between = body(error.bodyA) + " and " + body(error.bodyB);
-    if (!error.isGap) return number + between;
+    if (!error.isOfJoint) return number + between;
     return number + NameOf("joint", error.joint, ids.joints, theScene.description.joints) + " between " + between;
 }
 
@@ -87,11 +88,13 @@ void Run(LabRun& run) {
                  settles = std::min(0.5, 0.5 * duration);
     std::vector<double> errors;
     StepError worst;
+    run.isMeasured = false;
     for (int i = run.Steps(duration); i > 0; --i) {
         world.Step();
         if (world.Time() < settles) continue;
         const StepError error = ErrorOf(world);
         errors.push_back(error.value);
+        run.isMeasured |= error.value > 0 || world.Ours("reports of steps").Report().contacts > 0;
         if (error.value > worst.value) worst = error;
     }
     const auto rank = errors.begin() + static_cast<ptrdiff_t>(errors.size() * 19 / 20);
@@ -122,8 +125,9 @@ Result<const LabScene*> LoadUserScene(const std::string& name) {
         .name = theScene.name.c_str(),
         .what = theScene.description.description.c_str(),
         .error =
-            "the largest overlap or gap of a step over the size of its smaller body, exceeded in one "
-            "of twenty steps",
+            "the largest overlap or gap of a step over the size of its smaller body, or angle in rad that a joint is "
+            "off, "
+            "exceeded in one of twenty steps",
         .influences = {.timeStep = true,
                        .contacts = true,
                        .joints = !theScene.description.joints.empty() || !theScene.description.ragdolls.empty()},

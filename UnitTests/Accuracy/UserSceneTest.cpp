@@ -130,6 +130,36 @@ TEST_F(UserScene, IsAdvisedTargetsToo) {
         << advice;
 }
 
+// A ball that flies, and one on a spring: nothing that the error is of.
+TEST_F(UserScene, InWhichNothingTouchesOrHoldsIsNotMeasured) {
+    SceneDescription scene;
+    scene.steps = 120;
+    const ShapePtr ball = Sphere::Create(0.1f).Value();
+    for (const double x : {0.0, 1.0}) scene.bodies.push_back({{}, {.shape = ball, .position = {x, 0, 0}}});
+    DistanceJointSettings spring;
+    spring.anchorA.point = {1, 1, 0};
+    spring.anchorB = JointAnchor{.point = {1, 0, 0}};
+    spring.spring.frequency = 1;
+    scene.joints.push_back({{}, SceneJoint::kWorld, 1, spring});
+    const std::string file = (folder_ / "spring.json").string();
+    ASSERT_TRUE(WriteScene(file, scene));
+    const auto adviceFor = [&] {
+        const auto command = ParseLabCommand({"advise", file, "--error", "1%"});
+        EXPECT_TRUE(command) << command.GetError().message;
+        return AdviceForError({command.Value().lab.scenes[0], RunAt(command.Value().lab, {4})}, 0.01);
+    };
+    const std::string advice = adviceFor();
+    EXPECT_NE(advice.find("error not measured"), std::string::npos) << advice;
+    EXPECT_NE(advice.find("It is not measured here"), std::string::npos) << advice;
+    EXPECT_EQ(advice.find("0 %"), std::string::npos) << advice;
+    // A rod instead of the spring is stretched by the weight.
+    spring.spring = {};
+    scene.joints[0].settings = spring;
+    ASSERT_TRUE(WriteScene(file, scene));
+    const std::string ofRod = adviceFor();
+    EXPECT_EQ(ofRod.find("not measured"), std::string::npos) << ofRod;
+}
+
 TEST_F(UserScene, OfTheSamplesErrsLessWithMoreSubsteps) {
     const auto command = ParseLabCommand({"advise", "bridge", "--budget", "2ms"});
     ASSERT_TRUE(command) << command.GetError().message;
