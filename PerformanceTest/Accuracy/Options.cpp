@@ -6,6 +6,7 @@
 #include <Fulcrum/Samples/Runner/CommandLine.h>
 
 #include <cstdlib>
+#include <sstream>
 
 namespace fulcrum::accuracy {
 namespace {
@@ -30,6 +31,18 @@ Status ChooseScenes(const std::string& name, LabOptions& lab) {
     std::vector<std::string> names = LabSceneNames();
     names.push_back("all");
     return UnknownName("scene", name, names);
+}
+
+// Of a list with commas.
+Status LeaveOut(const std::string& names, LabOptions& lab) {
+    std::istringstream list(names);
+    for (std::string name; std::getline(list, name, ',');) {
+        if (FindLabScenes(name).empty()) return UnknownName("scene", name, LabSceneNames());
+        std::erase_if(lab.scenes,
+                      [&](const LabScene* scene) { return scene->name == name || scene->FullName() == name; });
+    }
+    if (lab.scenes.empty()) return Error{ErrorCode::OutOfRange, "--without " + names + " leaves no scene"};
+    return Done{};
 }
 
 Result<LabCommand> ParseAdvise(std::vector<std::string> arguments) {
@@ -80,11 +93,14 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
     }
     LabCommand command;
     command.lab.folder = "out/accuracy";
-    std::string name = "all";
+    std::string name = "all", without;
     CLI::App app("Speed against accuracy: runs scenes over a grid of settings", "./fulcrum accuracy");
     AddText(app, "--scene", "a scene's name, or all (default all)", [&](const std::string& text) {
         name = text;
     })->type_name("SCENE");
+    AddText(app, "--without", "leave these scenes out: names with commas", [&](const std::string& text) {
+        without = text;
+    })->type_name("SCENE,...");
     app.add_flag_function(
         "--quick", [&](int64_t) { command.lab.isQuick = true; },
         "about 12 settings a scene and short runs: some minutes. The full grid takes more than a day");
@@ -147,6 +163,7 @@ Result<LabCommand> ParseLabCommand(std::vector<std::string> arguments) {
         command.lab.folder /= "soak";
     }
     if (const Status chosen = ChooseScenes(name, command.lab); !chosen) return chosen.GetError();
+    if (const Status left = LeaveOut(without, command.lab); !left) return left.GetError();
     if (command.lab.comparesTargets) {
         if (command.soaks || !command.baseline.empty() || !command.save.empty())
             return Error{ErrorCode::OutOfRange, "--targets goes without --soak, --save and --baseline"};

@@ -17,7 +17,7 @@ RunRecord Make(const char* scene, int rate, double error) {
     return run;
 }
 
-class Baseline : public testing::Test {
+class Baseline : public ::testing::Test {
 protected:
     // After a change of the runs.
     Comparison After(const std::function<void(std::vector<RunRecord>&)>& change) {

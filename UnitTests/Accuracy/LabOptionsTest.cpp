@@ -57,6 +57,14 @@ TEST(LabOptions, RecordsOneSettingOrAll) {
     EXPECT_TRUE(ParseLabCommand({"--recordings"}).Value().recordings.isOfAll);
 }
 
+TEST(LabOptions, ScenesMayBeLeftOut) {
+    const size_t all = AllLabScenes().size();
+    EXPECT_EQ(ParseLabCommand({"--without", "huge.box,coincident.4096"}).Value().lab.scenes.size(), all - 2);
+    EXPECT_EQ(ParseLabCommand({"--scene", "incline", "--without", "incline.stick"}).Value().lab.scenes.size(), 1u);
+    EXPECT_FALSE(ParseLabCommand({"--without", "hug.box"}));
+    EXPECT_FALSE(ParseLabCommand({"--scene", "pendulum", "--without", "pendulum"}));
+}
+
 TEST(LabOptions, AnUnknownSceneIsAnsweredWithTheNearest) {
     const auto command = ParseLabCommand({"--scene", "inclin"});
     ASSERT_FALSE(command);

@@ -15,7 +15,7 @@ namespace fulcrum::accuracy {
 // For gtest's messages.
 inline void PrintTo(const LabScene& scene, std::ostream* stream) { *stream << scene.FullName(); }
 
-inline std::string TestName(const testing::TestParamInfo<LabScene>& tested) {
+inline std::string TestName(const ::testing::TestParamInfo<LabScene>& tested) {
     std::string name = tested.param.FullName();
     std::replace_if(
         name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');

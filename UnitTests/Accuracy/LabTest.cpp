@@ -34,7 +34,7 @@ std::string WithoutTimes(const std::vector<RunRecord>& runs) {
     return text;
 }
 
-class Lab : public testing::Test {
+class Lab : public ::testing::Test {
 protected:
     Lab() : folder_(fs::temp_directory_path() / ("fulcrum-lab-" + std::to_string(getpid()))) {}
     ~Lab() override { fs::remove_all(folder_); }

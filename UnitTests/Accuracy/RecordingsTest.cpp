@@ -36,7 +36,7 @@ TEST(LabRecorder, ShowsTheFirstWorldOfARun) {
 }
 
 TEST(Recordings, AreFoundByTheirRuns) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "recordings_test";
+    const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "recordings_test";
     std::filesystem::remove_all(folder);
     std::vector<RunRecord> runs(2);
     for (RunRecord& run : runs) run.scene = "incline.slide";

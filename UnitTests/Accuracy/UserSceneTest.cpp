@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class UserScene : public testing::Test {
+class UserScene : public ::testing::Test {
 protected:
     UserScene() { fs::create_directories(folder_); }
     ~UserScene() override { fs::remove_all(folder_); }
@@ -38,7 +38,7 @@ protected:
         return runs ? std::move(runs.Value()) : std::vector<RunRecord>();
     }
 
-    const fs::path folder_ = fs::path(testing::TempDir()) / "user_scene_test";
+    const fs::path folder_ = fs::path(::testing::TempDir()) / "user_scene_test";
 };
 
 // Six cubes of 1 m, of which five press on the lowest contact.

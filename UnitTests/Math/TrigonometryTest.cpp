@@ -45,8 +45,8 @@ void ForEachMagnitude(int low, int high, int count, F f) {
 }
 
 template <class Real>
-class Trigonometry : public testing::Test {};
-using Reals = testing::Types<float, double>;
+class Trigonometry : public ::testing::Test {};
+using Reals = ::testing::Types<float, double>;
 TYPED_TEST_SUITE(Trigonometry, Reals);
 
 TYPED_TEST(Trigonometry, SineAndCosineAreExactToTwoUlps) {

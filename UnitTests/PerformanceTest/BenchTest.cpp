@@ -37,7 +37,7 @@ Words NamesOf(const BenchOptions& options) {
 }
 
 // A folder of its own, and runs of the program in it.
-class Bench : public testing::Test {
+class Bench : public ::testing::Test {
 protected:
     Bench() : folder_(std::filesystem::temp_directory_path() / ("fulcrum-bench-" + std::to_string(getpid()))) {
         std::filesystem::create_directories(folder_);
@@ -47,11 +47,11 @@ protected:
     std::string File(const char* name) const { return (folder_ / name).string(); }
     // The exit status; output and errors are kept.
     int Run(Words words) {
-        testing::internal::CaptureStdout();
-        testing::internal::CaptureStderr();
+        ::testing::internal::CaptureStdout();
+        ::testing::internal::CaptureStderr();
         const int status = RunBench(Options(words));
-        output_ = testing::internal::GetCapturedStdout();
-        errors_ = testing::internal::GetCapturedStderr();
+        output_ = ::testing::internal::GetCapturedStdout();
+        errors_ = ::testing::internal::GetCapturedStderr();
         return status;
     }
     bool Says(const std::string& part) const { return (output_ + errors_).find(part) != std::string::npos; }

@@ -56,7 +56,7 @@ std::vector<ComparedRun> Compared(const Json& now, const Json& baseline) {
     return {ComparedRun{}};
 }
 
-class SavedRunsFile : public testing::Test {
+class SavedRunsFile : public ::testing::Test {
 protected:
     ~SavedRunsFile() override { std::filesystem::remove(file_); }
 

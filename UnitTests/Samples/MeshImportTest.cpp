@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MeshFiles : public testing::Test {
+class MeshFiles : public ::testing::Test {
 protected:
     void SetUp() override {
         std::string name = (fs::temp_directory_path() / "fulcrum-meshes-XXXXXX").string();

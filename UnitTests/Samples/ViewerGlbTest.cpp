@@ -45,7 +45,7 @@ TEST(ViewerShapeMesh, EnclosesTheVolumeOfTheShape) {
 }
 
 nlohmann::json WrittenText(const Recording& recording, const std::string& name) {
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+    const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / name;
     const Status status = WriteGlb(recording, path);
     EXPECT_TRUE(status) << (status ? "" : status.GetError().message);
     std::ifstream file(path, std::ios::binary);
@@ -123,7 +123,7 @@ TEST(ViewerGlb, NothingMovesIsNoAnimation) {
 }
 
 TEST(ViewerGlb, NoBodiesIsAnError) {
-    EXPECT_FALSE(WriteGlb(Recording(), std::filesystem::path(testing::TempDir()) / "fulcrum-none.glb"));
+    EXPECT_FALSE(WriteGlb(Recording(), std::filesystem::path(::testing::TempDir()) / "fulcrum-none.glb"));
 }
 
 }  // namespace

@@ -154,13 +154,13 @@ TEST(ViewerPageData, RestingBodiesCostNoBytesAFrame) {
     EXPECT_LE(EncodePageData(recording).size() - before, 1000u * (7 + 5 + 2));
 }
 
-class ViewerHtml : public testing::Test {
+class ViewerHtml : public ::testing::Test {
 protected:
     ViewerHtml() { std::filesystem::remove_all(folder_); }
     ~ViewerHtml() override { std::filesystem::remove_all(folder_); }
     const std::filesystem::path folder_ =
-        std::filesystem::path(testing::TempDir()) /
-        (std::string("fulcrum-html-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+        std::filesystem::path(::testing::TempDir()) /
+        (std::string("fulcrum-html-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(ViewerHtml, WritesOnePageAndNothingElse) {

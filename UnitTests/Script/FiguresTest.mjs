@@ -133,3 +133,14 @@ test('what has no place is refused, and nothing is written', () => {
     assert.equal(read('Docs/figures.json'), before);
   }
 });
+
+test('what suites took becomes their shares', () => {
+  writeFileSync(file('seconds'), '100 release\n7 a new suite\n');
+  assert.equal(figures(copy, '--seconds', file('seconds')).status, 0);
+  const shares = JSON.parse(read('Docs/figures.json')).processor_seconds;
+  assert.equal(shares.release, 110);
+  assert.equal(shares['a new suite'], 8);
+  assert.ok(shares.asan > 0);
+  writeFileSync(file('seconds'), 'release 100\n');
+  assert.match(figures(copy, '--seconds', file('seconds')).stderr, /is no line of/);
+});

@@ -10,7 +10,7 @@ fail_test() {
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp "$1/fulcrum" "$work/"
+cp -r "$1/fulcrum" "$1/Scripts" "$work/"
 cd "$work" || exit 1
 # Whoever configures or builds leaves a trace, and fails.
 mkdir tools

@@ -1,8 +1,11 @@
-// The number of random cases of a test: all in a normal build, a tenth under the sanitizers, which are twenty times
-// slower.
+// How much of a test is run: the number of its random cases, and which of its settings. Always the first ones, so that
+// a build runs the same today and tomorrow.
 #pragma once
 
 #include <algorithm>
+#include <cstdlib>
+#include <initializer_list>
+#include <vector>
 
 namespace fulcrum::testing {
 
@@ -18,6 +21,22 @@ inline constexpr bool kIsSanitized = false;
 inline constexpr bool kIsSanitized = false;
 #endif
 
+// All in a normal build, a tenth under the sanitizers, which are twenty times slower.
 constexpr int Cases(int normally) { return kIsSanitized ? std::max(normally / 10, 1) : normally; }
+
+// Set by ./fulcrum test --all.
+inline bool IsAllWanted() {
+    static const bool isWanted = std::getenv("FULCRUM_ALL_TESTS") != nullptr;
+    return isWanted;
+}
+
+// Of long statistics: as many as a change must hold every day, and all that there are on demand.
+inline int Cases(int daily, int all) { return Cases(IsAllWanted() ? all : daily); }
+
+// Of settings, or of kinds, that run the same code: all in a normal build, the first under the sanitizers.
+template <class T>
+std::vector<T> SomeOf(std::initializer_list<T> normally) {
+    return std::vector<T>(normally.begin(), kIsSanitized && !IsAllWanted() ? normally.begin() + 1 : normally.end());
+}
 
 }  // namespace fulcrum::testing

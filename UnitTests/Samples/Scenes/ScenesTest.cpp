@@ -55,7 +55,7 @@ void ExpectBodies(const std::vector<Placed>& placed, const std::vector<Position>
     }
 }
 
-class EveryScene : public testing::TestWithParam<const Scene*> {};
+class EveryScene : public ::testing::TestWithParam<const Scene*> {};
 
 TEST_P(EveryScene, StepsWithFinitePoses) {
     const Scene& scene = *GetParam();
@@ -80,7 +80,7 @@ TEST_P(EveryScene, IsDescribedInOneLine) {
     EXPECT_GT(GetParam()->steps, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, testing::ValuesIn(AllScenes().begin(), AllScenes().end()),
+INSTANTIATE_TEST_SUITE_P(Scenes, EveryScene, ::testing::ValuesIn(AllScenes().begin(), AllScenes().end()),
                          [](const auto& scene) { return std::string(scene.param->name); });
 
 TEST(Scenes, HaveNamesOfTheirOwn) {
