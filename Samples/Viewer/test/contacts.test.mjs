@@ -3,7 +3,9 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { contactsNow } from '../Page/contactsNow.js';
 import { decadesOf, hasLogarithm, positive, splitsOf } from '../Page/curves.js';
+import { Contacts } from '../Page/overlays.js';
 import { lengthText, roundBelow } from '../Page/scaleBar.js';
+import { Dots, Lines, Surfaces } from '../Page/strokes.js';
 
 // Two bodies, of which each has a sample of frame 0; they are now where `positions` and `rotations` say.
 function timelineAt(frame, positions, rotations = [0, 0, 0, 1, 0, 0, 0, 1], there = [true, true]) {
@@ -39,6 +41,20 @@ test('contacts of bodies that have parted, slid, rolled or gone are not shown', 
   assert.equal(contactsNow(CONTACTS, timelineAt(5, [0, 0, 0, 0, 1, 0], undefined, [true, false]), 0.5).count, 0);
   // A fiftieth of a body: as good as where it was.
   near(contactsNow(CONTACTS, timelineAt(5, [0, 0, 0, 0.01, 1, 0]), 0.5).points, [0.405, 0.5, 0, -0.395, 0.5, 0]);
+});
+
+test('what has not been filled yet draws nothing', () => {
+  const stage = { renderer: { getPixelRatio: () => 1 }, scene: { add() {} } };
+  for (const strokes of [new Dots(stage, 1, 5), new Surfaces(stage, 1)]) {
+    assert.equal(strokes.geometry.drawRange.count, 0);
+    strokes.begin();
+    strokes.add([0, 0, 0, 1, 0, 0, 0, 1, 0], [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], { r: 1, g: 0, b: 0 });
+    strokes.end();
+    assert.equal(strokes.geometry.drawRange.count, 3);
+  }
+  assert.equal(new Lines(stage, 1, 1).geometry.instanceCount, 0);
+  const { geometry, lineGeometry } = new Contacts({ contacts: [CONTACTS] }, stage);
+  assert.deepEqual([geometry.drawRange.count, lineGeometry.drawRange.count], [0, 0]);
 });
 
 test('the scale bar has round lengths that fit', () => {
