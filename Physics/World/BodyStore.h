@@ -251,9 +251,11 @@ public:
     void Reserve(size_t more);                                            // for so many more bodies
     uint32_t Allocate();                                                  // an index with default values; exists is set
     void Free(uint32_t index);                                            // after Remove: the index may be reused
-    // Whether the id is that of an existing body; then id.index is its index.
+    // Whether the id is that of an existing body; then id.index is its index. The body of the world has none: its index
+    // and generation may be those of an id that was given out before a snapshot was restored.
     bool Find(BodyId id) const {
-        return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation;
+        return id.index < cold.size() && cold[id.index].exists && cold[id.index].generation == id.generation &&
+               !cold[id.index].isWorld;
     }
     BodyId IdOf(uint32_t index) const { return {index, cold[index].generation}; }
     void SetPenetrationTarget(uint32_t index, float target) {
