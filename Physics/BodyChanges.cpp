@@ -322,8 +322,11 @@ Status BodyInterface::SetDamping(BodyId id, float linear, float angular) {
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckNotNegative("linear", linear), CheckNotNegative("angular", angular))) return *e;
-    world_.bodies.dynamics[id.index].linearDamping = linear;
-    world_.bodies.dynamics[id.index].angularDamping = angular;
+    BodyDynamics& d = world_.bodies.dynamics[id.index];
+    // Much damping may be all that held it.
+    if (d.linearDamping != linear || d.angularDamping != angular) WakeBody(world_, id.index);
+    d.linearDamping = linear;
+    d.angularDamping = angular;
     return Done{};
 }
 
@@ -344,8 +347,12 @@ Status BodyInterface::SetMaxSpeeds(BodyId id, float linear, float angular) {
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckPositive("linear", linear), CheckPositive("angular", angular))) return *e;
-    world_.bodies.dynamics[id.index].maxLinearSpeed = std::min(linear, kFastestLinear);
-    world_.bodies.dynamics[id.index].maxAngularSpeed = std::min(angular, kFastestAngular);
+    BodyDynamics& d = world_.bodies.dynamics[id.index];
+    const float mostLinear = std::min(linear, kFastestLinear), mostAngular = std::min(angular, kFastestAngular);
+    // A limit may be all that held it.
+    if (d.maxLinearSpeed != mostLinear || d.maxAngularSpeed != mostAngular) WakeBody(world_, id.index);
+    d.maxLinearSpeed = mostLinear;
+    d.maxAngularSpeed = mostAngular;
     return Done{};
 }
 

@@ -105,7 +105,7 @@ public:
     // m/s2, up to 1e6 along each axis, in place of the system's; none: the system's again. The gravity factor applies
     // to both. Wakes.
     Status SetGravity(BodyId id, const std::optional<Vector3>& gravity);
-    // As in BodySettings. Locking wakes, damping and speeds do not.
+    // As in BodySettings. Axes wake; damping and speeds do if they change.
     Status SetDamping(BodyId id, float linear, float angular);
     Status SetLockedAxes(BodyId id, LockedAxes axes);
     Status SetMaxSpeeds(BodyId id, float linear, float angular);

@@ -8,8 +8,10 @@
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/ShapeEdits.h>
 #include <Fulcrum/Physics/World/TargetChanges.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
+#include <Fulcrum/Physics/World/Waking.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
 
 #include <cstring>
@@ -72,6 +74,8 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     const WorldChange<&PhysicsSystem::SetSettings> change(*world_, settings);
     if (change.Refusal()) return *change.Refusal();
     const std::array<uint32_t, 32> before = world_->settings.layerCollides;
+    const bool changesGravity = settings.gravity != world_->settings.gravity,
+               endsSleep = world_->settings.sleep.enabled && !settings.sleep.enabled;
     // The pair caches of one method are invalid for the other.
     if (settings.narrowPhase != world_->settings.narrowPhase)
         for (Pair& pair : world_->pairs.pairs) pair.cache = {};
@@ -81,6 +85,11 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     // The efforts of islands and the choice of trees depend on the settings.
     world_->coloring.Invalidate();
     if (settings.layerCollides != before) RefilterLayers(*world_, before);
+    if (changesGravity || endsSleep)
+        WakeIf(*world_, [&](uint32_t body) {
+            return endsSleep ||
+                   (!world_->bodies.cold[body].hasGravity && world_->bodies.dynamics[body].gravityFactor != 0);
+        });
     KeepForEvents(*world_);
     if (!settings.events.bodies) step_->events.bodies = {};
     else if (!hadBodyEvents) BeginBodyEvents(world_->bodies, step_->events);
@@ -114,6 +123,7 @@ WorldLock::Exclusive PhysicsSystem::HoldForChanges() {
 Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
+    HeedShapeEdits(*world_);
     return WriteSnapshot(*world_, *step_, *snapshots_, bytes);
 }
 
@@ -126,6 +136,7 @@ Status PhysicsSystem::RestoreSnapshot(std::span<const std::byte> bytes, const Sn
 uint64_t PhysicsSystem::HashState() const {
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return ReportMisuse(*alone.Refusal()), 0;
+    HeedShapeEdits(*world_);
     return HashOfState(*world_, *step_, *snapshots_);
 }
 

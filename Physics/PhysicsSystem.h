@@ -64,10 +64,11 @@ public:
     std::span<const BodyId> BodiesInside(BodyId sensor) const;
     const SystemSettings& Settings() const;
     // Errors as for Create. Takes effect at the next step. If layerCollides changes, contacts that it forbids end, new
-    // ones are searched for, and the bodies of these layers wake.
+    // ones are searched for, and the bodies of these layers wake. If gravity changes, the bodies that it acts on wake;
+    // if sleep is no longer enabled, all do.
     Status SetSettings(const SystemSettings& settings);
     // Sets the contact listener (not owned, must outlive its use); null: none. Existing pairs are checked again, and
-    // bodies whose contact it forbids wake.
+    // bodies wake whose contact it forbids, or the one before had changed.
     void SetContactListener(const ContactListener* listener);
 
     // The observer of steps and their stages from now on (not owned, must outlive its use); null: none. Not part of

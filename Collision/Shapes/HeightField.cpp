@@ -144,13 +144,18 @@ Result<std::shared_ptr<HeightField>> HeightField::Create(const HeightFieldSettin
     return field;
 }
 
-void HeightField::StoreHeight(uint32_t sample, float height) {
-    if (precision_ == HeightPrecision::Float) {
-        heights_[sample] = height + 0.0f;  // no negative zeros
-        return;
-    }
+uint16_t HeightField::StepOf(float height) const {
     const double steps = heightStep_ > 0 ? (double{height} - double{lowestHeight_}) / double{heightStep_} : 0.0;
-    steps_[sample] = static_cast<uint16_t>(std::clamp(std::floor(steps + 0.5), 0.0, 65535.0));
+    return static_cast<uint16_t>(std::clamp(std::floor(steps + 0.5), 0.0, 65535.0));
+}
+
+void HeightField::StoreHeight(uint32_t sample, float height) {
+    if (precision_ == HeightPrecision::Float) heights_[sample] = height + 0.0f;  // no negative zeros
+    else steps_[sample] = StepOf(height);
+}
+
+bool HeightField::HasHeight(uint32_t sample, float height) const {
+    return precision_ == HeightPrecision::Float ? heights_[sample] == height : steps_[sample] == StepOf(height);
 }
 
 // ---- The min/max pyramid
@@ -239,15 +244,40 @@ Status HeightField::CheckRectangle(uint32_t x0, uint32_t z0, uint32_t countX, ui
     return Done{};
 }
 
+void HeightField::Changed::Include(uint32_t atX, uint32_t atZ) {
+    x = {std::min(x.first, atX), std::max(x.last, atX)};
+    z = {std::min(z.first, atZ), std::max(z.last, atZ)};
+}
+
+// More edits than this between two steps of a world share boxes, and then wake more bodies than they must.
+constexpr size_t kMostEdits = 32;
+
+void HeightField::LogEdit(const Bounds& changed) {
+    NoteEdit();
+    edits_.push_back({version_, changed});
+    if (edits_.size() <= kMostEdits) return;
+    edits_[1].changed.Include(edits_[0].changed);
+    edits_.erase(edits_.begin());
+}
+
 Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
                                        std::span<const float> heights) {
     if (const Status status = CheckRectangle(x0, z0, countX, countZ, heights.size(), sampleCountX_, sampleCountZ_);
         !status)
         return status.GetError();
     if (const Status status = CheckHeights(heights); !status) return status.GetError();
+    Changed samples;
+    for (uint32_t i = 0; i < countZ; ++i)
+        for (uint32_t k = 0; k < countX; ++k)
+            if (!HasHeight((z0 + i) * sampleCountX_ + x0 + k, heights[size_t{i} * countX + k]))
+                samples.Include(x0 + k, z0 + i);
+    if (samples.IsNone()) return Bounds{};
+    edits_.reserve(kMostEdits + 1);  // the only call that may throw
     // The cells that touch a changed sample.
-    const CellRange x{x0 == 0 ? 0 : x0 - 1, std::min(x0 + countX, CellCountX()) - 1};
-    const CellRange z{z0 == 0 ? 0 : z0 - 1, std::min(z0 + countZ, CellCountZ()) - 1};
+    const auto cellsAt = [](CellRange of, uint32_t count) {
+        return CellRange{of.first == 0 ? 0 : of.first - 1, std::min(of.last, count - 1)};
+    };
+    const CellRange x = cellsAt(samples.x, CellCountX()), z = cellsAt(samples.z, CellCountZ());
     Bounds changed = BoundsOfCells(x, z);
     for (uint32_t i = 0; i < countZ; ++i)
         for (uint32_t k = 0; k < countX; ++k)
@@ -255,6 +285,7 @@ Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX
     changed.Include(BoundsOfCells(x, z));
     UpdateRanges(x, z);
     UpdateBounds();
+    LogEdit(changed);
     return changed;
 }
 
@@ -263,6 +294,12 @@ Result<Bounds> HeightField::SetCells(uint32_t x0, uint32_t z0, uint32_t countX, 
     if (const Status status = CheckRectangle(x0, z0, countX, countZ, cells.size(), CellCountX(), CellCountZ()); !status)
         return status.GetError();
     if (const Status status = CheckCells(cells); !status) return status.GetError();
+    Changed changed;
+    for (uint32_t i = 0; i < countZ; ++i)
+        for (uint32_t k = 0; k < countX; ++k)
+            if (Cell(x0 + k, z0 + i) != cells[size_t{i} * countX + k]) changed.Include(x0 + k, z0 + i);
+    if (changed.IsNone()) return Bounds{};
+    edits_.reserve(kMostEdits + 1);
     if (cells_.empty()) cells_.assign(size_t{CellCountX()} * CellCountZ(), 0);
     for (uint32_t i = 0; i < countZ; ++i) {
         for (uint32_t k = 0; k < countX; ++k) {
@@ -272,13 +309,15 @@ Result<Bounds> HeightField::SetCells(uint32_t x0, uint32_t z0, uint32_t countX, 
             holeCount_ += cell == kHoleCell ? 1 : 0;
         }
     }
-    return BoundsOfCells({x0, x0 + countX - 1}, {z0, z0 + countZ - 1});
+    const Bounds bounds = BoundsOfCells(changed.x, changed.z);
+    LogEdit(bounds);
+    return bounds;
 }
 
 size_t HeightField::MemoryUsed() const {
     return sizeof(HeightField) + heights_.capacity() * sizeof(float) + steps_.capacity() * sizeof(uint16_t) +
            cells_.capacity() + ranges_.capacity() * sizeof(Range) + levels_.capacity() * sizeof(Level) +
-           materials_.capacity() * sizeof(SurfaceMaterial);
+           materials_.capacity() * sizeof(SurfaceMaterial) + edits_.capacity() * sizeof(Edit);
 }
 
 }  // namespace fulcrum

@@ -1,6 +1,8 @@
 // Height field: a grid of heights over the x-z plane, two triangles a cell, with holes and a material a cell. For
 // static and kinematic bodies. Queries may run on any number of threads at once. Mutable: SetHeights and SetCells must
-// not run concurrently with a step or a query that may access the shape.
+// not run while another thread may access the shape, in a step or in a query; PhysicsSystem::HoldForChanges keeps the
+// other threads of a world out. Worlds need not be told of an edit: queries see it at once, the next step of each wakes
+// the bodies at the changed part, and snapshots and hashes of the state are of the content that there is.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -43,12 +45,19 @@ public:
     static Result<std::shared_ptr<HeightField>> Create(const HeightFieldSettings& settings);
 
     // Replace the heights of the samples x0 .. x0 + countX - 1, z0 .. z0 + countZ - 1, or the same of cells, row by row
-    // along x. Return the bounds of the changed part, before and after: sleeping bodies within may have lost their
-    // support. LocalBounds() may change. Errors as in Create, and OutOfRange for a rectangle that is not inside; then
-    // nothing has changed. SetCells may make all cells holes.
+    // along x. Return the bounds of the part in which something changed, before and after; empty, and the version is
+    // the same, if nothing did. LocalBounds() may change. Errors as in Create, and OutOfRange for a rectangle that is
+    // not inside; then nothing has changed. SetCells may make all cells holes.
     Result<Bounds> SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
                               std::span<const float> heights);
     Result<Bounds> SetCells(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, std::span<const uint8_t> cells);
+    // Calls visit(const Bounds&) for boxes that together contain all that was edited after a version: of this shape, or
+    // any that LatestShapeVersion gave; 0 for all edits. Of many edits the older ones share a box.
+    template <class Visit>
+    void VisitEditsSince(uint64_t version, Visit&& visit) const {
+        for (const Edit& edit : edits_)
+            if (edit.version > version) visit(edit.changed);
+    }
 
     uint32_t TriangleIdEnd() const override { return 2 * CellCountX() * CellCountZ(); }
     uint32_t TriangleCount() const override { return TriangleIdEnd() - 2 * holeCount_; }
@@ -96,6 +105,16 @@ private:
     struct CellRange {
         uint32_t first, last;
     };
+    // Samples or cells of a rectangle that an edit changes; none if first > last.
+    struct Changed {
+        CellRange x{~0u, 0}, z{~0u, 0};
+        bool IsNone() const { return x.first > x.last; }
+        void Include(uint32_t atX, uint32_t atZ);
+    };
+    struct Edit {
+        uint64_t version;
+        Bounds changed;
+    };
 
     static Status CheckGrid(const HeightFieldSettings& settings);
     Status CheckHeights(std::span<const float> heights) const;
@@ -105,7 +124,10 @@ private:
     // Checks the settings and sets all members except heights, ranges and bounds.
     static Result<std::shared_ptr<HeightField>> Prepare(const HeightFieldSettings& settings);
     void Finish();
+    uint16_t StepOf(float height) const;
+    bool HasHeight(uint32_t sample, float height) const;
     void StoreHeight(uint32_t sample, float height);
+    void LogEdit(const Bounds& changed);
     void MakeLevels();
     void UpdateRanges(CellRange x, CellRange z);
     void UpdateBounds();
@@ -153,6 +175,7 @@ private:
     std::vector<uint8_t> cells_;  // empty: all 0
     std::vector<Range> ranges_;
     std::vector<Level> levels_;
+    std::vector<Edit> edits_;  // ascending versions
 };
 
 }  // namespace fulcrum

@@ -44,7 +44,7 @@ Result<std::shared_ptr<MutableCompound>> MutableCompound::Create(std::span<const
         compound->Place(compound->count_, child.Value(), CompoundSums::Of(child.Value(), BoundsOf(child.Value())));
     }
     compound->tree_.Rebuild();
-    if (const Status status = compound->UpdateMass(); !status) return status.GetError();
+    if (const Status status = compound->ComputeMass(); !status) return status.GetError();
     return compound;
 }
 
@@ -159,6 +159,7 @@ ChildId MutableCompound::Commit(const Edit& edit) {
     mass_ = edit.mass;
     relativeMass_ = edit.relativeMass;
     Refresh(edit.total);
+    NoteEdit();
     return {index, generations_[index]};
 }
 
@@ -187,6 +188,12 @@ Status MutableCompound::Remove(ChildId id, MassUpdate mass) {
 }
 
 Status MutableCompound::UpdateMass() {
+    const Status status = ComputeMass();
+    if (status) NoteEdit();
+    return status;
+}
+
+Status MutableCompound::ComputeMass() {
     const CompoundSum total = sums_.Total();
     const Result<MassProperties> mass = MassOf(total);
     if (!mass) return mass.GetError();

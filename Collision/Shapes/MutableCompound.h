@@ -71,6 +71,7 @@ private:
     Result<Edit> Plan(uint32_t index, Child child, MassUpdate mass) const;
     void Place(uint32_t index, const Child& child, const CompoundSum& sum);
     void Refresh(const CompoundSum& total);
+    Status ComputeMass();
 
     std::vector<uint32_t> generations_;  // by index; grows when the child is removed
     std::vector<uint32_t> free_;         // indices without a child; the last one is used next

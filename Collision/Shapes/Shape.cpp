@@ -1,6 +1,21 @@
 #include <Fulcrum/Collision/Shapes/Shape.h>
 
+#include <atomic>
+
 namespace fulcrum {
+
+namespace {
+
+std::atomic<uint64_t> latestVersion{0};
+
+}  // namespace
+
+uint64_t LatestShapeVersion() { return latestVersion.load(std::memory_order_acquire); }
+
+void Shape::NoteEdit() {
+    version_ = latestVersion.fetch_add(1, std::memory_order_acq_rel) + 1;
+    hash_.Forget();
+}
 
 const char* ShapeTypeName(ShapeType type) {
     switch (type) {

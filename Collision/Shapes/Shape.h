@@ -1,5 +1,6 @@
-// The base of all shapes. A shape is immutable once created and may be shared by any number of bodies and threads; only
-// a MutableCompound can be edited, and belongs to one body. Geometry is expressed in the center frame: axes of the
+// The base of all shapes. A shape is immutable once created and may be shared by any number of bodies and threads,
+// except two: a HeightField can be edited in place, for all that share it, and a MutableCompound, of which each body
+// has a copy. Each edit gives the shape another version. Geometry is expressed in the center frame: axes of the
 // frame in which the user described it, origin at the center of mass of its volume. So a body's internal pose is that
 // of its center of mass, and no kernel adds an offset.
 #pragma once
@@ -51,6 +52,7 @@ public:
     uint64_t Get() const { return __atomic_load_n(&hash_, __ATOMIC_RELAXED); }
     // Threads that compute it concurrently get the same value.
     void Set(uint64_t hash) const { __atomic_store_n(&hash_, hash, __ATOMIC_RELAXED); }
+    void Forget() { Set(0); }  // the content has changed
 
 private:
     mutable uint64_t hash_ = 0;
@@ -74,9 +76,14 @@ public:
     float InnerRadius() const { return innerRadius_; }
     // Distance of the farthest point from the center of mass.
     float OuterRadius() const { return outerRadius_; }
+    // 0 until the first edit. Each edit gives a number that no shape of this process had before: it says that the
+    // content is another one, and nothing about which; for that see ContentHash.
+    uint64_t Version() const { return version_; }
 
 protected:
     friend uint64_t ContentHash(const Shape& shape);
+    // Called by each edit, when the content has changed.
+    void NoteEdit();
     explicit Shape(ShapeType type) : type_(type) {}
 
     ShapeType type_;
@@ -84,8 +91,13 @@ protected:
     Bounds bounds_;
     float innerRadius_ = 0;
     float outerRadius_ = 0;
+    uint64_t version_ = 0;
     CachedHash hash_;
 };
+
+// The latest version that any shape of the process has got; 0 if none was edited. Who has seen it knows that nothing
+// was edited since, without a look at the shapes.
+uint64_t LatestShapeVersion();
 
 struct SupportingFace;
 

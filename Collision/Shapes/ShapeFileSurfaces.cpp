@@ -208,10 +208,12 @@ void ShapeFileAccess::WriteField(const HeightField& field, ByteWriter& out) {
     out.Write(static_cast<uint8_t>(field.isTwoSided_));
     out.Write(field.activeEdgeCosine_);
     WriteMaterials(field.materials_, out);
-    out.Write(static_cast<uint8_t>(!field.cells_.empty()));
+    // None if all are 0, however they came to be so: equal contents have equal bytes.
+    const bool hasCells = std::ranges::any_of(field.cells_, [](uint8_t cell) { return cell != 0; });
+    out.Write(static_cast<uint8_t>(hasCells));
     out.WriteAll(std::span<const float>(field.heights_));
     out.WriteAll(std::span<const uint16_t>(field.steps_));
-    out.WriteAll(std::span<const uint8_t>(field.cells_));
+    if (hasCells) out.WriteAll(std::span<const uint8_t>(field.cells_));
 }
 
 ShapeResult ShapeFileAccess::ReadField(ByteReader& in) {

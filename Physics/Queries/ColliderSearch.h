@@ -27,18 +27,18 @@ public:
         const auto visit = [&](uint32_t collider) {
             if (Accepts(collider)) found(collider);
         };
-        if (filter_.layers & store.movingLayers) {
-            if (outsideFatBounds.IsEmpty()) {
-                walk(store.movingTree, visit);
-            } else {
-                walk(outsideFatBounds.Tree(), visit);
-                walk(store.movingTree, [&](uint32_t collider) {
-                    if (!outsideFatBounds.Contains(collider)) visit(collider);
-                });
-            }
-        }
-        if (filter_.layers & store.staticLayers) walk(store.staticTree, visit);
-        if (filter_.sensors) walk(store.sensorTree, visit);  // always within their bounds, which Sense refits
+        const auto walkAll = [&](const auto& visitInTrees) {
+            if (filter_.layers & store.movingLayers) walk(store.movingTree, visitInTrees);
+            if (filter_.layers & store.staticLayers) walk(store.staticTree, visitInTrees);
+            if (filter_.sensors) walk(store.sensorTree, visitInTrees);
+        };
+        if (outsideFatBounds.IsEmpty()) return walkAll(visit);
+        walk(outsideFatBounds.Tree(), [&](uint32_t collider) {
+            if (filter_.sensors || !store.colliders[collider].sensor) visit(collider);
+        });
+        walkAll([&](uint32_t collider) {
+            if (!outsideFatBounds.Contains(collider)) visit(collider);
+        });
     }
 
     // Bounds in the trees are relative to this origin.

@@ -112,10 +112,9 @@ public:
 
     uint32_t NumberOf(const ShapePtr& shape) override {
         if (!shape) return 0;
-        // Those that may change are told apart by their content, too.
-        const uint64_t content = shape->Type() == ShapeType::MutableCompound ? ContentHash(*shape) : 0;
+        // An edited one is another.
         const auto [found, isNew] =
-            shapes_.try_emplace({shape.get(), content}, static_cast<uint32_t>(shapes_.size() + 1));
+            shapes_.try_emplace({shape.get(), shape->Version()}, static_cast<uint32_t>(shapes_.size() + 1));
         if (!isNew) return found->second;
         keptShapes_.push_back(shape);  // so that no other shape gets its address
         const Result<std::vector<uint8_t>> bytes = SaveShape(*shape, customShapes_);

@@ -4,6 +4,7 @@
 #include <Fulcrum/Physics/Snapshots/SnapshotAccess.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/Colors.h>
+#include <Fulcrum/Physics/World/ShapeEdits.h>
 
 #include <algorithm>
 
@@ -66,7 +67,7 @@ void SnapshotAccess::FindAwakePlaces(BodyStore& bodies) {
 
 void SnapshotAccess::ListSpecial(BodyStore& bodies) {
     bodies.worldBody = BodyStore::kNone;
-    for (IndexSet* set : {&bodies.pushed, &bodies.singleMoves}) {
+    for (IndexSet* set : {&bodies.pushed, &bodies.singleMoves, &bodies.editable}) {
         set->words_.assign((bodies.cold.size() + 63) / 64, 0);
         set->size_ = 0;
     }
@@ -75,6 +76,7 @@ void SnapshotAccess::ListSpecial(BodyStore& bodies) {
         if (!body.exists) continue;
         if (bodies.dynamics[i].hasForce || !body.lastPush.IsZero()) bodies.pushed.Insert(i);
         if (body.singleMove != SingleMove::None) bodies.singleMoves.Insert(i);
+        if (IsEditable(*body.shape)) bodies.editable.Insert(i);
         if (body.isWorld) bodies.worldBody = i;
     }
 }

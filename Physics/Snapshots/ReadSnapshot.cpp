@@ -113,7 +113,10 @@ Status FindShapes(SnapshotReader& s, const BodyStore& bodies, std::span<const Sh
         const BodyCold* now = i < bodies.Size() ? &bodies.cold[i] : nullptr;
         if (now && now->shape && !now->children && ContentHash(*now->shape) == hash) continue;
         ShapePtr shape = known.Find(hash);
-        if (!shape) return Missing("a shape", hash, "no body of the world has; give it in SnapshotSources::shapes");
+        if (!shape)
+            return Missing("a shape", hash,
+                           "no body of the world has, since it is gone or was edited; give it in "
+                           "SnapshotSources::shapes");
         found.shapes.push_back({i, std::move(shape)});
     }
     Array<uint8_t> bytes;
@@ -278,6 +281,7 @@ void RestoreStep(SnapshotReader& s, WorldState& world, StepState& step) {
     std::ranges::fill(step.sensing.changedIn, uint64_t{0});
     std::ranges::fill(step.pairs.changes, PairChange::None);
     world.outsideFatBounds.MarkStale();
+    world.heededShapeVersion = LatestShapeVersion();  // all shapes are as they were
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ struct SnapshotAccess {
     static void Resize(JointStore& joints, uint32_t count);
     // Derived state. Indices of bodies in the list of awake ones;
     static void FindAwakePlaces(BodyStore& bodies);
-    // which of them were pushed, are to stop, or stand for the world;
+    // which of them were pushed, are to stop, have a shape that may be edited in place, or stand for the world;
     static void ListSpecial(BodyStore& bodies);
     // the body and the piece of each collider; returns whether all bodies are those that they were; which of them
     // moved; the trees;
@@ -107,7 +107,8 @@ void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
 template <class Stream, class Bodies>
 void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
     auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
-           targetCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges, free, count] = bodies;
+           targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges, notesSleepChanges, free, count] =
+        bodies;
     s.Begin(SnapshotSection::Bodies);
     VisitElements(s, bodies.Size(), kMostOfBody,
                   [&](auto& stream, uint32_t i) FULCRUM_FORCE_INLINE_LAMBDA { VisitBody(stream, bodies, i); });
@@ -269,7 +270,7 @@ void SnapshotAccess::VisitSensors(Stream& s, Sensors& store, Changed& itsChanged
 template <class Stream, class World, class Step>
 void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts) {
     auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, itsPairs, joints, coloring, sleeping,
-           sensors, removed, number, lock, outsideFatBounds, seenPoses] = world;
+           sensors, removed, number, lock, outsideFatBounds, seenPoses, heededShapeVersion] = world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events, errors] = step;
     auto& [deepOverlaps, dispersing, crowded, settling, settled] = crowd;

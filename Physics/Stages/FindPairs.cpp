@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/BroadPhase/BoundsTreeBulk.h>
 #include <Fulcrum/Physics/Stages/Crowd.h>
 #include <Fulcrum/Physics/Stages/CrowdOverlaps.h>
+#include <Fulcrum/Physics/Stages/PutIntoSleepers.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/Filters.h>
 #include <Fulcrum/Physics/World/Materials.h>
@@ -22,14 +23,29 @@ namespace {
 constexpr uint32_t kMostDeepPairs = 1024;
 constexpr uint32_t kAnyNumber = ~0u;
 
-// What two colliders with overlapping bounds need.
-enum class PairNeed : uint8_t { Nothing, Activation, Creation };
+// What two colliders with overlapping bounds need. ALook: one of them is new where it is, and rests, and may have been
+// put into a sleeping body.
+enum class PairNeed : uint8_t { Nothing, Activation, Creation, ALook };
+
+// Of two colliders whose bodies are not awake.
+PairNeed AskForLook(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other) {
+    const auto sleeps = [&](uint32_t collider) {
+        const BodyDynamics& d = view.bodies.dynamics[view.colliders.colliders[collider].body];
+        return d.motion == MotionType::Dynamic;
+    };
+    if (sleeps(index) == sleeps(other)) return PairNeed::Nothing;
+    const uint32_t resting = sleeps(index) ? other : index;
+    const bool isPlaced = view.colliders.colliders[resting].previous.IsEmpty();
+    return isPlaced && pairs.Find(index, other) == PairStore::kNone ? PairNeed::ALook : PairNeed::Nothing;
+}
 
 // Of two colliders the first of which has moved.
 PairNeed AskForPair(const CollisionView& view, const PairStore& pairs, uint32_t index, uint32_t other) {
     const Collider &self = view.colliders.colliders[index], &collider = view.colliders.colliders[other];
     // The pair exists already, or is filtered out.
     if (collider.previous.Overlaps(self.previous)) return PairNeed::Nothing;
+    if (!view.bodies.dynamics[self.body].awake && !view.bodies.dynamics[collider.body].awake)
+        return AskForLook(view, pairs, index, other);
     if (!MayCollide(view, self.body, collider.body)) return PairNeed::Nothing;
     const uint32_t pair = pairs.Find(index, other);
     if (pair != PairStore::kNone) return pairs.active.Contains(pair) ? PairNeed::Nothing : PairNeed::Activation;
@@ -53,6 +69,7 @@ void Consider(const CollisionView& view, const PairStore& pairs, uint32_t index,
     if (findings.deepPairs > mostDeep) return;
     const PairNeed need = AskForPair(view, pairs, index, other);
     if (need == PairNeed::Nothing) return;
+    if (need == PairNeed::ALook) return NoteIfPutIntoSleeper(view, index, other, findings);
     findings.deepPairs += OverlapDeeply(view, index, other);
     findings.pairs.push_back(KeyOf({std::min(index, other), std::max(index, other), need == PairNeed::Creation}));
 }

@@ -4,6 +4,7 @@
 #include <Fulcrum/Physics/StepObserver.h>
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/CrowdContacts.h>
+#include <Fulcrum/Physics/Stages/PutIntoSleepers.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
@@ -31,6 +32,12 @@ void FindPairsOf(WorldState& world, StepState& state, const StepContext& step, c
     ForgetMoved(world.colliders, world.sensors, workers.jobs);
 }
 
+// Bodies into which something was put search for pairs at once, too.
+void FindAllPairs(WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
+    FindPairsOf(world, state, step, workers);
+    while (WakePutInto(state.findings, world)) FindPairsOf(world, state, step, workers);
+}
+
 void SettleStoppedIn(WorldState& world, const StepWorkers& workers) {
     SettleStopped(workers.findings, world.colliders, world.bodies, world.pairs, world.joints, world.coloring);
 }
@@ -45,7 +52,7 @@ constexpr Stage kStages[] = {
          world.outsideFatBounds.Clear();
          world.lock.LetQueriesIn();
      }},
-    {"FindPairs", FindPairsOf},
+    {"FindPairs", FindAllPairs},
     {"Collide",
      [](WorldState& world, StepState& state, const StepContext& step, const StepWorkers& workers) {
          Collide(step, world.bodies, world.colliders, world.joints, world.coloring, world.pairs, state.pairs, workers,

@@ -5,12 +5,12 @@
 namespace fulcrum {
 
 size_t HeapBytes(const WorkerFindings& findings) {
-    const auto& [colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface, surfacePlaces,
-                 surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, deflections, sweepHits,
+    const auto& [colliders, outsideFatBounds, pairs, deepPairs, putInto, deepOverlaps, crowdedOverlaps, surface,
+                 surfacePlaces, surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, deflections, sweepHits,
                  sensorCandidates, sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept, deepest,
                  deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan, joints] =
         findings;
-    return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, deepOverlaps, crowdedOverlaps, surface,
+    return HeapBytes(colliders, outsideFatBounds, pairs, deepPairs, putInto, deepOverlaps, crowdedOverlaps, surface,
                      surfacePlaces, surfaceLeft, surfaceTouched, more, newContacts, turnedNormals, deflections,
                      sweepHits, sensorCandidates, sensorVisits, sensorTests, eventPairs, libccd, contacts, points, kept,
                      deepest, deepestPair, clamped, frozen, firstFrozen, sleepCandidates, loadsChanged, strainsBegan,

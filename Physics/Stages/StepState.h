@@ -53,6 +53,7 @@ struct alignas(64) WorkerFindings {
     Array<uint32_t> outsideFatBounds;  // Continuous: those that the solver moved out of them
     Array<uint64_t> pairs;             // FindPairs: keys of new or resting pairs
     uint32_t deepPairs = 0;            // FindPairs: how many of these pairs overlap deeply
+    Array<uint32_t> putInto;           // FindPairs: sleeping bodies into which something was put
     Array<uint32_t> deepOverlaps;      // Collide: bodies that overlap another deeply, once for each such overlap
     Array<uint32_t> crowdedOverlaps;   // Collide: crowded bodies and their levels, for each contact
     SurfaceContacts surface;           // Collide: temporary

@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/ShapeEdits.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
@@ -95,6 +96,8 @@ ColliderShape PieceOfChild(const CompoundShape& compound, const CompoundShape::C
 
 void SetShapeOf(WorldState& world, uint32_t body, const ShapePtr& shape) {
     BodyCold& cold = world.bodies.cold[body];
+    if (IsEditable(*shape)) world.bodies.editable.Insert(body);
+    else world.bodies.editable.Erase(body);
     cold.shape = shape;
     cold.children.reset();
     if (shape->Type() != ShapeType::MutableCompound) return;

@@ -22,7 +22,7 @@ uint32_t BodyStore::Allocate() {
         dynamics.emplace_back();
         cold.emplace_back();
         remainders.emplace_back();
-        for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves}) set->Reserve(index + 1);
+        for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable}) set->Reserve(index + 1);
     }
     cold[index].exists = true;
     if (notesSleepChanges) sleepChanges.push_back(index);
@@ -51,7 +51,7 @@ void BodyStore::Free(uint32_t index) {
     dynamics[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
-    for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves}) set->Erase(index);
+    for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable}) set->Erase(index);
     // After the last generation the index is not used again, so that no id becomes valid again.
     if (generation != 0) free_.push_back(index);
     --count_;
@@ -192,10 +192,10 @@ size_t HeapBytes(const BodyCold& body) {
 
 size_t HeapBytes(const BodyStore& store) {
     const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                 continuousCount, targetCount, reportsContacts, pushed, singleMoves, sleepChanges, notesSleepChanges,
-                 free, count] = store;
+                 continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
+                 notesSleepChanges, free, count] = store;
     return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                     continuousCount, targetCount, reportsContacts, pushed, singleMoves, sleepChanges,
+                     continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
                      notesSleepChanges, free, count);
 }
 

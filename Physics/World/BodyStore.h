@@ -242,6 +242,7 @@ public:
     IndexSet reportsContacts;      // bodies of BodySettings::reportsContacts
     IndexSet pushed;               // bodies that have a force or torque, or had one in the last step
     IndexSet singleMoves;          // bodies with a SingleMove
+    IndexSet editable;             // bodies whose shape may be edited in place, see ShapeEdits.h
     // For events, if enabled: bodies created, woken or fallen asleep since the last step; with duplicates, unordered.
     Array<uint32_t> sleepChanges;
     bool notesSleepChanges = false;

@@ -72,13 +72,23 @@ void ChangeListener(WorldState& world, const ContactListener* listener) {
     world.listener = listener;
     RemoveAllForbiddenPairs(world);
     world.pairs.KeepListenersData(listener != nullptr);  // without surface velocities
-    // Resets the previous listener's changes of contacts, and searches for pairs that it had forbidden.
+    // Resets the previous listener's changes of contacts, which may have held what sleeps, and searches for pairs that
+    // it had forbidden.
     for (uint32_t i = 0; i < world.pairs.contacts.size(); ++i) {
         const uint32_t pair = world.pairs.contacts[i].pair;
         if (pair == PairStore::kNone) continue;
+        ContactRecord& record = world.pairs.records[i];
+        const float friction = record.friction, restitution = record.restitution;
         CombineMaterials(world.bodies, world.colliders, world.pairs, pair);
-        for (const auto mark : {ContactRecord::kSurfaceVelocity, ContactRecord::kMassOverride, ContactRecord::kSensed})
-            world.pairs.records[i].Set(mark, false);
+        bool wasChanged = record.friction != friction || record.restitution != restitution;
+        for (const auto mark :
+             {ContactRecord::kSurfaceVelocity, ContactRecord::kMassOverride, ContactRecord::kSensed}) {
+            wasChanged |= record.Has(mark);
+            record.Set(mark, false);
+        }
+        if (!wasChanged) continue;
+        for (const uint32_t body : {world.pairs.pairs[pair].bodyA, world.pairs.pairs[pair].bodyB})
+            WakeBody(world, body);
     }
     for (uint32_t body : world.bodies.awake) RequeueColliders(world.bodies, world.colliders, body);
 }

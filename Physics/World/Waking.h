@@ -28,6 +28,15 @@ struct SleepStores {
 
 // Wakes a body, the island it sleeps in and bodies jointed to them; their colliders are queued for the search of pairs.
 void WakeBody(const SleepStores& stores, uint32_t body);
+// Wakes those dynamic bodies that sleep and for which wakes(body) is true, with their islands.
+template <class Wakes>
+void WakeIf(const SleepStores& stores, const Wakes& wakes) {
+    for (uint32_t body = 0; body < stores.bodies.Size(); ++body) {
+        const BodyDynamics& d = stores.bodies.dynamics[body];
+        if (d.motion == MotionType::Dynamic && !d.awake && stores.bodies.cold[body].exists && wakes(body))
+            WakeBody(stores, body);
+    }
+}
 // Wakes bodies connected to the body by enabled joints; the body itself may be awake or static.
 void WakeJoined(const SleepStores& stores, uint32_t body);
 // Wakes bodies that overlap the bounds.

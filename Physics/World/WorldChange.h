@@ -2,11 +2,12 @@
 // line of each function that changes the world:
 //     const WorldChange<&BodyInterface::SetLayer> change(world_, id, layer);
 //     if (change.Refusal()) return *change.Refusal();
-// Calls made of other public calls have none: the observer sees those.
+// Calls made of other public calls have none: the observer sees those. Edits of shapes since the last call come before
+// it: so what follows from them does not depend on whether the state was saved or hashed between.
 #pragma once
 
 #include <Fulcrum/Physics/CallObserver.h>
-#include <Fulcrum/Physics/World/WorldState.h>
+#include <Fulcrum/Physics/World/ShapeEdits.h>
 
 #include <type_traits>
 
@@ -20,7 +21,9 @@ public:
         : Exclusive(world.lock), observer_(world.callObserver) {
         static_assert(std::is_same_v<CallArguments<kFunction>, std::tuple<Arguments...>>,
                       "all arguments of the call, in their order");
-        if (!observer_ || Refusal()) [[likely]]
+        if (Refusal()) return;
+        HeedShapeEdits(world);
+        if (!observer_) [[likely]]
             return;
         const void* const addresses[] = {&arguments...};
         observer_->BeginCall(&kCallTag<kFunction>, addresses);

@@ -46,6 +46,7 @@ struct WorldState {
     WorldLock lock;
     CollidersOutsideFatBounds outsideFatBounds;
     SeenPoses seenPoses;
+    uint64_t heededShapeVersion = 0;  // see ShapeEdits.h
 };
 
 size_t HeapBytes(const WorldState& world);

@@ -70,12 +70,11 @@ std::shared_ptr<HeightField> FieldOf(const SceneWorld& world) {
         std::static_pointer_cast<const HeightField>(world.Bodies().GetShape(world.watched[0])));
 }
 
-// Opens the middle. SetPose after an edit wakes the bodies that rested on the field.
+// Opens the middle: the bodies that rested there wake.
 void OpenTheMiddle(SceneWorld& world, double) {
     if (world.StepCount() != kOpens) return;
     const std::vector<uint8_t> open(4 * kTrap * kTrap, kHoleCell);
     (void)FieldOf(world)->SetCells(kMiddle - kTrap, kMiddle - kTrap, 2 * kTrap, 2 * kTrap, open);
-    (void)world.Bodies().SetPose(world.watched[0], Position::Zero(), {});
 }
 
 // Outlines of the special cells: red for holes, blue for ice, violet for rubber.

@@ -1,0 +1,88 @@
+#include <Fulcrum/Physics/World/ShapeEdits.h>
+
+#include <Fulcrum/Collision/Shapes/HeightField.h>
+#include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Waking.h>
+
+#include <limits>
+#include <utility>
+
+namespace fulcrum {
+
+namespace {
+
+const HeightField& FieldOf(const BodyStore& bodies, uint32_t body) {
+    return static_cast<const HeightField&>(*bodies.cold[body].shape);
+}
+
+// A box of a shape's frame at a pose relative to the origin of bounds, with the margin that its fat bounds have.
+Bounds FatBoundsOf(const Bounds& box, const SystemSettings& settings, const Shape& shape, const Pose& pose) {
+    const Matrix3 rotation = ToMatrix(pose.rotation);
+    const Vector3 center = rotation * box.Center(), half = box.HalfExtents();
+    const Vector3 reach =
+        rotation.x.cwiseAbs() * half.x() + rotation.y.cwiseAbs() * half.y() + rotation.z.cwiseAbs() * half.z();
+    const Bounds tight = RoundedOutwards(pose.position + Vector3(center - reach).cast<double>(),
+                                         pose.position + Vector3(center + reach).cast<double>());
+    return BoundsAlong(tight, Vector3::Zero(),
+                       0.5f * SpeculativeDistance(settings, shape) + BoundsMargin(settings, shape));
+}
+
+// Pairs are searched for anew if the bounds are others than before.
+void UpdateBoundsOf(WorldState& world, uint32_t body, uint32_t index) {
+    Collider& collider = world.colliders.colliders[index];
+    const Bounds before = collider.fat;
+    SetFatBounds(world.settings, world.bodies, world.colliders, index);
+    if (before.Contains(collider.fat) && collider.fat.Contains(before)) return;
+    world.colliders.TreeOf(collider).Update(index, collider.fat);
+    collider.previous = {};
+    world.colliders.Queue(index);
+    if (world.pairs.HasAny(index)) world.bodies.poses[body].boundsChangedIn = static_cast<uint32_t>(world.step + 1);
+}
+
+// The manifolds with what is near the changed part are computed anew, however little it moved.
+void ForgetManifoldsInside(WorldState& world, uint32_t collider, const Bounds& changed) {
+    world.pairs.VisitOf(collider, [&](uint32_t index) {
+        const Pair& pair = world.pairs.pairs[index];
+        const uint32_t other = pair.colliderA == collider ? pair.colliderB : pair.colliderA;
+        if (pair.contact == PairStore::kNone || !world.colliders.colliders[other].fat.Overlaps(changed)) return;
+        world.pairs.contacts[pair.contact].reference.position =
+            Vector3::Constant(std::numeric_limits<float>::infinity());
+    });
+}
+
+void HeedEditsOf(WorldState& world, uint32_t body, uint64_t since) {
+    const HeightField& field = FieldOf(world.bodies, body);
+    world.bodies.SetRadii(body, field);
+    world.bodies.MarkPlaced(body);
+    if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
+    VisitColliders(world, body, [&](uint32_t index) {
+        UpdateBoundsOf(world, body, index);
+        world.outsideFatBounds.Forget(index);
+        Pose pose = ColliderPoseOf(world.bodies, world.colliders, index);
+        pose.position -= world.colliders.boundsOrigin;
+        field.VisitEditsSince(since, [&](const Bounds& box) {
+            const Bounds changed = FatBoundsOf(box, world.settings, field, pose);
+            ForgetManifoldsInside(world, index, changed);
+            if (!world.colliders.colliders[index].sensor) WakeInside(world, changed);
+        });
+    });
+}
+
+}  // namespace
+
+bool AreShapesEditedSince(const BodyStore& bodies, uint64_t version) {
+    bool areEdited = false;
+    bodies.editable.Visit(
+        [&](uint32_t body) { areEdited |= bodies.cold[body].exists && FieldOf(bodies, body).Version() > version; });
+    return areEdited;
+}
+
+void HeedShapeEditsUntil(WorldState& world, uint64_t latest) {
+    const uint64_t since = std::exchange(world.heededShapeVersion, latest);
+    world.bodies.editable.Visit([&](uint32_t body) {
+        const BodyCold& cold = world.bodies.cold[body];
+        if (cold.exists && FieldOf(world.bodies, body).Version() > since) HeedEditsOf(world, body, since);
+    });
+}
+
+}  // namespace fulcrum
