@@ -1,6 +1,7 @@
 // Deltas compare a snapshot's blocks with those of the base. Equal blocks are only counted. For others the XOR with the
 // base's block of the same key is written in words of eight bytes: a mask of the non-zero bytes followed by these, or a
 // zero followed by the number of zero words. A new block is compared with zeros.
+#include <Fulcrum/Physics/Files/ErrorBoundary.h>
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
 
 #include <algorithm>
@@ -237,7 +238,12 @@ Status ApplySnapshotDelta(std::span<const std::byte> base, std::span<const std::
         return Error{ErrorCode::Degenerate, "the delta starts from another snapshot than this base"};
     Append(snapshot, &header.snapshot, sizeof header.snapshot);
     DeltaReader in(delta.subspan(sizeof header));
-    MaybeError error = ApplyBlocks(before.Value(), header.snapshot, in, snapshot);
+    // A few bytes may say that very many follow.
+    const Status applied = WithErrors("the delta", [&]() -> Status {
+        if (MaybeError e = ApplyBlocks(before.Value(), header.snapshot, in, snapshot)) return *e;
+        return Done{};
+    });
+    MaybeError error = applied ? MaybeError() : applied.GetError();
     if (!error)
         if (const Result<SnapshotParts> whole = CheckSnapshot(snapshot); !whole) error = whole.GetError();
     if (!error) return Done{};

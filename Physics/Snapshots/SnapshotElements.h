@@ -409,7 +409,8 @@ void VisitList(Stream& s, List& list, size_t most, Visit&& visit) {
     uint32_t count = static_cast<uint32_t>(list.size());
     s.Reserve(sizeof count + list.size() * most);
     s(count);
-    if constexpr (!Stream::kWrites) list.resize(s.HasFailed() ? 0 : count);
+    // An element has a byte or more: a damaged count must not ask for more memory than there is data.
+    if constexpr (!Stream::kWrites) list.resize(s.HasFailed() || count > s.Left().size() ? 0 : count);
     for (auto& element : list) visit(element);
 }
 

@@ -40,7 +40,7 @@ const std::map<std::string, std::vector<std::string>> kAllowedPartsOfPhysics = {
     {"Physics/Joints", {}},
     {"Physics/Stages", {"Physics/World"}},
     {"Physics/Queries", {"Physics/World"}},
-    {"Physics/Snapshots", {"Physics/World", "Physics/Joints", "Physics/Stages"}},
+    {"Physics/Snapshots", {"Physics/Files", "Physics/World", "Physics/Joints", "Physics/Stages"}},
     {"Physics", {"Physics/World", "Physics/Joints", "Physics/Stages", "Physics/Queries", "Physics/Snapshots"}},
     {"Physics/Ragdoll", {"Physics", "Physics/Joints"}},
     {"Physics/Fields", {"Physics"}},
