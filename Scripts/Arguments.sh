@@ -73,10 +73,10 @@ check_number() {
     [[ $kind != X ]] || word='a number' pattern='^-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$'
     [[ $kind != NN ]] || word='whole numbers'
     [[ $text =~ $pattern || $kind == X && $text =~ ^-?(inf|infinity)$ ]] ||
-        fail "$name takes $word from $least to $most, not '$text'"
+        fail "$name takes $word from $least to $most, not '$text'$hint"
     is_within "$text" "$least" "$most" && return
     is_within "$text" "$least" 1e999 || most=$least
-    fail "$name $text is outside $4 to $5; the nearest valid value is $most"
+    fail "$name $text is outside $4 to $5; the nearest valid value is $most$hint"
 }
 
 check_value() {
@@ -88,14 +88,21 @@ check_value() {
         NN) for part in ${text//,/ }; do check_number "$name" "$part" NN "$least" "$most"; done ;;
         ONE)
             IFS=, read -ra known <<<"$least"
-            [[ " ${known[*]} " == *" $text "* ]] || hint='' unknown "${name#--}" "$text" "${known[@]}"
+            [[ " ${known[*]} " != *" $text "* ]] || return 0
+            case $name in
+                --position-correction) unknown "kind of $name" "$text" "${known[@]}" ;;
+                --onto-up) unknown "axis of $name" "$text" "${known[@]}" ;;
+                --narrow-phase) fail "$name takes ${least/,/ or }, not '$text'$hint" ;;
+                --peer) unknown peer "$text" "${known[@]}" ;;
+                *) unknown "$name" "$text" "${known[@]}" ;;
+            esac
             ;;
         KINDS)
             for part in ${text//,/ }; do
-                [[ $part =~ ^(html|glb|none)$ ]] || hint='' unknown 'kind of --record' "$part" html glb none
+                [[ $part =~ ^(html|glb|none)$ ]] || unknown 'kind of --record' "$part" html glb none
             done
-            [[ ,$text, != *,none,* || ! $text =~ html|glb ]] || fail "--record $text: none stands alone; html,glb records both"
-            [[ $text =~ [a-z] ]] || fail "--record takes html, glb, html,glb or none"
+            [[ ,$text, != *,none,* || ! $text =~ html|glb ]] || fail "--record $text: none stands alone; html,glb records both$hint"
+            [[ $text =~ [a-z] ]] || fail "--record takes html, glb, html,glb or none$hint"
             ;;
         PART) [[ $text =~ ^[0-9.]+([eE][-+]?[0-9]+)?%?$ ]] || fail "$name: '$text' is no positive number with or without %" ;;
         TIME) [[ $text =~ ^[0-9.]+([eE][-+]?[0-9]+)?(ms)?$ ]] || fail "$name: '$text' is no positive number with or without ms" ;;
@@ -120,6 +127,7 @@ parse() {
     local verb=$1 argument name spec value each hint=" (./fulcrum $1 --help shows all)"
     local -a options
     shift
+    [[ $verb != @(bench|accuracy|advise) ]] || hint=' (--help shows all)'
     options_of "$verb"
     words=() many=() given=()
     while (($# > 0)); do
@@ -155,7 +163,11 @@ parse() {
 }
 
 is_given() { [[ " ${given[*]} " == *" $1 "* ]]; }
-no_more_than() { ((${#words[@]} <= $1)) || fail "one argument too many: '${words[$1]}' (./fulcrum $2 --help shows all)"; }
+no_more_than() {
+    local hint=" (./fulcrum $2 --help shows all)"
+    [[ $2 != @(bench|accuracy|advise) ]] || hint=' (--help shows all)'
+    ((${#words[@]} <= $1)) || fail "one argument too many: '${words[$1]}'$hint"
+}
 
 # ---- Names ------------------------------------------------------------------------------------------------------------
 

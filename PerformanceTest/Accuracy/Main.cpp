@@ -4,6 +4,7 @@
 #include <Fulcrum/PerformanceTest/Accuracy/Options.h>
 #include <Fulcrum/PerformanceTest/Accuracy/Targets.h>
 #include <Fulcrum/Physics/Files/WholeFile.h>
+#include <Fulcrum/Samples/Runner/StandardOutput.h>
 
 #include <nlohmann/json.hpp>
 
@@ -99,6 +100,9 @@ int ReportTargets(const LabCommand& command, std::span<const SceneRuns> scenes) 
 }
 
 int Run(const LabCommand& command) {
+    for (const std::filesystem::path& file : {command.save, std::filesystem::path(command.table)})
+        if (const Status writable = file.empty() ? Status(Done{}) : CheckWritable(file); !writable)
+            return Fail(writable.GetError().message);
     Result<std::vector<RunRecord>> runs = RunLab(command.lab);
     if (!runs) return Fail(runs.GetError().message);
     if (!command.save.empty())
@@ -122,9 +126,9 @@ int Run(const LabCommand& command) {
 int main(int argc, char** argv) {
     const auto command = fulcrum::accuracy::ParseLabCommand(std::vector<std::string>(argv + 1, argv + argc));
     if (!command) return fulcrum::accuracy::Fail(command.GetError().message);
-    if (!command.Value().help.empty()) {
+    return fulcrum::WithStandardOutput([&] {
+        if (command.Value().help.empty()) return fulcrum::accuracy::Run(command.Value());
         std::printf("%s", command.Value().help.c_str());
         return 0;
-    }
-    return fulcrum::accuracy::Run(command.Value());
+    });
 }

@@ -1,5 +1,6 @@
 // fulcrum-bench: what ./fulcrum bench starts.
 #include <Fulcrum/PerformanceTest/Scenes/Bench.h>
+#include <Fulcrum/Samples/Runner/StandardOutput.h>
 
 #include <cstdio>
 
@@ -9,9 +10,9 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "fulcrum: %s\n", options.GetError().message.c_str());
         return 2;
     }
-    if (!options.Value().help.empty()) {
+    return fulcrum::WithStandardOutput([&] {
+        if (options.Value().help.empty()) return fulcrum::RunBench(options.Value());
         std::printf("%s", options.Value().help.c_str());
         return 0;
-    }
-    return fulcrum::RunBench(options.Value());
+    });
 }

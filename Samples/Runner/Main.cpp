@@ -1,5 +1,6 @@
 // fulcrum-runner: what ./fulcrum run, drop and list start.
 #include <Fulcrum/Samples/Runner/Commands.h>
+#include <Fulcrum/Samples/Runner/StandardOutput.h>
 
 #include <cstdio>
 
@@ -10,5 +11,5 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "fulcrum: %s\n", command.GetError().message.c_str());
         return 1;
     }
-    return fulcrum::Execute(command.Value());
+    return fulcrum::WithStandardOutput([&] { return fulcrum::Execute(command.Value()); });
 }
