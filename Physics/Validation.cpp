@@ -21,9 +21,8 @@ MaybeError CheckFiniteVector(const char* field, const V& v) {
                                            Number(v.z()) + "); it must be finite"};
 }
 
-MaybeError CheckFiniteNumber(const char* field, double x) {
-    if (std::isfinite(x)) return std::nullopt;
-    return Error{ErrorCode::NonFinite, std::string(field) + " is " + Number(x) + "; it must be finite"};
+Error FiniteError(const char* field, double x) {
+    return {ErrorCode::NonFinite, std::string(field) + " is " + Number(x) + "; it must be finite"};
 }
 
 }  // namespace
@@ -40,16 +39,14 @@ MaybeError CheckPosition(const char* field, const Position& value) {
                                             " m along an axis; it must be at most " + Number(kFarthest)};
 }
 
-MaybeError CheckRange(const char* field, double value, double low, double high) {
-    if (MaybeError e = CheckFiniteNumber(field, value)) return e;
-    if (value >= low && value <= high) return std::nullopt;
+Error RangeError(const char* field, double value, double low, double high) {
+    if (!std::isfinite(value)) return FiniteError(field, value);
     return Error{ErrorCode::OutOfRange, std::string(field) + " is " + Number(value) + "; it must be from " +
                                             Number(low) + " to " + Number(high)};
 }
 
-MaybeError CheckPositive(const char* field, double value) {
-    if (MaybeError e = CheckFiniteNumber(field, value)) return e;
-    if (value > 0) return std::nullopt;
+Error PositiveError(const char* field, double value) {
+    if (!std::isfinite(value)) return FiniteError(field, value);
     return Error{ErrorCode::NonPositive, std::string(field) + " is " + Number(value) + "; it must be larger than 0"};
 }
 
@@ -61,9 +58,8 @@ MaybeError CheckTarget(const char* field, double value) {
     return value == std::numeric_limits<double>::infinity() ? std::nullopt : CheckNotNegative(field, value);
 }
 
-MaybeError CheckNotNegative(const char* field, double value) {
-    if (MaybeError e = CheckFiniteNumber(field, value)) return e;
-    if (value >= 0) return std::nullopt;
+Error NegativeError(const char* field, double value) {
+    if (!std::isfinite(value)) return FiniteError(field, value);
     return Error{ErrorCode::Negative, std::string(field) + " is " + Number(value) + "; it must be 0 or more"};
 }
 

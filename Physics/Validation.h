@@ -3,6 +3,8 @@
 
 #include <Fulcrum/Physics/Settings.h>
 
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace fulcrum {
@@ -11,9 +13,26 @@ MaybeError CheckFinite(const char* field, const Vector3& value);
 MaybeError CheckFinite(const char* field, const Position& value);
 // Finite, and within 1e18 m, so that squares fit a float.
 MaybeError CheckPosition(const char* field, const Position& value);
-MaybeError CheckRange(const char* field, double value, double low, double high);  // both ends included
-MaybeError CheckPositive(const char* field, double value);
-MaybeError CheckNotNegative(const char* field, double value);
+// The error of a value that is out of range. Those that are inline are most of what the creation of a body checks.
+Error RangeError(const char* field, double value, double low, double high);
+Error PositiveError(const char* field, double value);
+Error NegativeError(const char* field, double value);
+inline constexpr double kLargestNumber = std::numeric_limits<double>::max();
+inline MaybeError CheckRange(const char* field, double value, double low, double high) {  // both ends included
+    if (value >= low && value <= high && std::fabs(value) <= kLargestNumber) [[likely]]
+        return std::nullopt;
+    return RangeError(field, value, low, high);
+}
+inline MaybeError CheckPositive(const char* field, double value) {
+    if (value > 0 && value <= kLargestNumber) [[likely]]
+        return std::nullopt;
+    return PositiveError(field, value);
+}
+inline MaybeError CheckNotNegative(const char* field, double value) {
+    if (value >= 0 && value <= kLargestNumber) [[likely]]
+        return std::nullopt;
+    return NegativeError(field, value);
+}
 MaybeError CheckTarget(const char* field, double value);               // 0: none of its own; may be infinite
 MaybeError CheckRotation(const char* field, const Quaternion& value);  // finite, of length 1 within 1e-3
 // One of the enumerators, from 0 to `last`; for masks, a combination of them.
@@ -40,7 +59,7 @@ Error Unknown(BodyId id);
 template <class... Checks>
 MaybeError FirstOf(Checks&&... checks) {
     MaybeError first;
-    ((first ? void() : void(first = std::forward<Checks>(checks))), ...);
+    ((first || !checks ? void() : void(first = std::forward<Checks>(checks))), ...);
     return first;
 }
 
