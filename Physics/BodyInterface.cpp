@@ -67,8 +67,32 @@ void PlaceBoundsOrigin(WorldState& world, uint32_t body) {
     }
 }
 
+// Whether a collider of a body has bounds that overlap those of one that may move.
+bool MeetsMoving(const WorldState& world, uint32_t body) {
+    bool meets = false;
+    VisitColliders(world, body, [&](uint32_t i) {
+        world.colliders.movingTree.Query(world.colliders.colliders[i].fat, [&](uint32_t) { meets = true; });
+    });
+    return meets;
+}
+
+// A new static body searches for pairs only if it meets what may move and is already there: what moves there later, or
+// is created later, searches itself. A step after many are created has nothing to do with them.
+void PlaceStatic(WorldState& world, uint32_t body) {
+    if (MeetsMoving(world, body)) {
+        world.bodies.MarkPlaced(body);
+        return RequeueColliders(world.bodies, world.colliders, body);
+    }
+    VisitColliders(world, body, [&](uint32_t i) {
+        Collider& collider = world.colliders.colliders[i];
+        collider.previous = collider.fat;  // as after a search
+    });
+    if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
+}
+
 // The settings must be valid.
 BodyId Add(WorldState& world, const BodySettings& settings) {
+    if (settings.motion == MotionType::Static) world.colliders.movingTree.Optimize(1);  // PlaceStatic asks it
     const uint32_t body = world.bodies.Allocate();
     BodyCold& cold = world.bodies.cold[body];
     SetShapeOf(world, body, settings.shape);
@@ -91,14 +115,13 @@ BodyId Add(WorldState& world, const BodySettings& settings) {
     world.bodies.UpdateInertia(body);
     if (world.bodies.Count() == (world.bodies.worldBody == BodyStore::kNone ? 1u : 2u)) PlaceBoundsOrigin(world, body);
     MakeColliders(world, body);
-    world.bodies.MarkPlaced(body);
+    if (settings.motion == MotionType::Static) PlaceStatic(world, body);
+    else world.bodies.MarkPlaced(body);
     if (settings.startAsleep) {
         world.bodies.SetVelocity(body, Vector3::Zero(), Vector3::Zero());
         if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
     } else if (settings.motion != MotionType::Static) {
         world.bodies.MarkAwake(body);
-        RequeueColliders(world.bodies, world.colliders, body);
-    } else {
         RequeueColliders(world.bodies, world.colliders, body);
     }
     if (settings.isSensor) world.sensors.Add(world.bodies.IdOf(body), settings.sensorSees, settings.sensorReportsStay);

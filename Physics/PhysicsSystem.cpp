@@ -51,6 +51,14 @@ Status PhysicsSystem::Update(double dt) {
     return Done{};
 }
 
+void PhysicsSystem::Optimize() const {
+    const WorldLock::Exclusive alone(world_->lock);
+    if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
+    ColliderStore& colliders = world_->colliders;
+    for (BoundsTree* tree : {&colliders.staticTree, &colliders.movingTree, &colliders.sensorTree})
+        tree->Rebuild(LoopOn(*world_->jobs));
+}
+
 const StepEvents& PhysicsSystem::Events() const {
     static const StepEvents kNone;
     const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_->lock, WorldLock::Access::Queries);

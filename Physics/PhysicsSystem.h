@@ -42,6 +42,11 @@ public:
     // nothing has changed.
     Status Update(double dt);
 
+    // Puts the trees in order by which steps and queries find bodies, on the job system: after many bodies were
+    // created, as when a level is loaded. Else the first query does so, and steps as soon as their own searches have
+    // cost as much. Results are the same without.
+    void Optimize() const;
+
     BodyInterface& Bodies() { return bodies_; }
     const BodyInterface& Bodies() const { return bodies_; }
     // The same bodies, by getters that lock the world: for threads that run beside a step.

@@ -15,6 +15,7 @@
 // threads may share.
 #pragma once
 
+#include <Fulcrum/Collision/Shapes/ParallelLoop.h>
 #include <Fulcrum/Math/Bounds.h>
 #include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Math/Wide.h>
@@ -41,9 +42,12 @@ public:
     Bounds GetBounds(uint32_t id) const;  // id is in the tree
 
     // Once a step: refits the ancestors of leaves that changed. Rebuilds the tree when the extra cost of queries due to
-    // its looser boxes since the last rebuild has reached the cost of a rebuild; each Insert and Update is assumed to
-    // be followed by one query.
-    void Optimize();
+    // its looser boxes since the last rebuild has reached the cost of a rebuild. queries: that will follow, before the
+    // next call. Without: one for each Insert and Update since the last.
+    void Optimize() { Optimize(changesSinceOptimize_); }
+    void Optimize(uint32_t queries, const ParallelLoop& parallel = {});
+    // Whether most leaves were inserted since the last rebuild, so that queries cost up to twice as much.
+    bool IsMostlyPending() const { return pendingCount_ > kWidth && pendingCount_ > size_ / 2; }
 
     // Nodes are 0 .. NodeCount() - 1; any may have no leaves. The functions over ranges of nodes are defined in
     // BoundsTreeBulk.h.
@@ -57,8 +61,8 @@ public:
     void NoteUpdated(uint32_t changed);
 
     // Rebuilds the whole tree, top down, each node full except for the last ones; leaves that are large compared to the
-    // whole, such as floors, hang right below the root.
-    void Rebuild();
+    // whole, such as floors, hang right below the root. The tree does not depend on `parallel`.
+    void Rebuild(const ParallelLoop& parallel = {});
 
     // Removes all leaves and keeps the memory.
     void Clear();
@@ -144,19 +148,38 @@ private:
     Packed SlotBox(uint32_t node, int slot) const;
     void SetSlotBox(uint32_t node, int slot, const Packed& box);
     void SetLeaf(uint32_t node, int slot, uint32_t id, const Packed& box);
+    void Link(uint32_t node, int slot, uint32_t child, const Packed& box);
     void SetInner(uint32_t node, int slot, uint32_t child, const Packed& box);
+    bool Enlarge(uint32_t node, int slot, const Packed& box);
     void Loosen(uint32_t node, const Packed& box);
     Packed Refit(uint32_t node);
 
     uint32_t AllocateNode();
+    void ResetNode(uint32_t node);
     void ReleaseIfEmpty(uint32_t node);
     uint32_t PendingLeafNode();
     void AppendToSpine(uint32_t height);
 
+    double AreaIfBuilt() const;
     void GatherLeaves();
     uint32_t MoveLargeLeavesToBack();
-    Packed BuildNode(uint32_t node, uint32_t first, uint32_t count, int slot, int end);
-    void BuildChildren(uint32_t node, uint32_t first, uint32_t count, uint32_t capacity, int& slot, Packed& total);
+    // Gathered leaves that fill slots of a node, in children of a capacity, whose nodes are numbered from nextNode.
+    struct Part {
+        uint32_t node;
+        int slot;  // the first
+        uint32_t first, count;
+        uint32_t capacity;  // leaves: a power of eight, or 1
+        uint32_t nextNode;
+        double area = 0;                                // of the nodes made
+        bool IsSmall() const { return count <= 2048; }  // built by one thread, in a tenth of a millisecond
+        bool IsNode() const { return count <= capacity; }
+        uint32_t CountOfLeft() const;
+        Part Left() const;
+        Part Right() const;
+    };
+    void PlanParts();
+    void BuildParts(size_t whole, const ParallelLoop& parallel);
+    Packed BuildPart(const Part& part, double& area);
     void SplitAt(uint32_t first, uint32_t count, uint32_t left);
 
     void ValidateNode(uint32_t node, int depth, uint32_t& nodes, uint32_t& leaves) const;
@@ -171,6 +194,7 @@ private:
     Array<Node> nodes_;                              // the first nodeCount_ are in use or on the free list
     Array<uint32_t> places_;                         // id -> node * kWidth + slot
     Array<Packed> gathered_;                         // Rebuild's leaves; lane 3 holds the id's bits
+    Array<Part> parts_;                              // Rebuild's parts
     uint32_t pendingSpine_[kMaxPendingHeight] = {};  // the pending tree's node being filled, by height
     uint32_t pendingHeight_ = 0;                     // nodes on the spine
     uint32_t nodeCount_ = 0;
@@ -178,9 +202,10 @@ private:
     uint32_t size_ = 0;
     uint32_t pendingCount_ = 0;  // insertions since the last build
     uint32_t changesSinceOptimize_ = 0;
-    double area_ = 0;       // sum of the half surface areas of all nodes but the root
-    double builtArea_ = 0;  // the same after the last build
-    double debt_ = 0;       // extra work of queries since the last build, in queries
+    double area_ = 0;                 // sum of the half surface areas of all nodes but the root
+    double builtArea_ = 0;            // the same after the last build
+    double insertedExtents_[3] = {};  // sums over the insertions since then, m
+    double debt_ = 0;                 // extra work of queries since the last build, in queries
 };
 
 // The slots whose boxes overlap the query; limit = {upper, -lower}.

@@ -115,21 +115,152 @@ void BoundsTree::GatherLeaves() {
     }
 }
 
-void BoundsTree::Rebuild() {
+namespace {
+
+// Nodes that hold leaves are full but for the last one of each height: how many nodes there are follows from the number
+// of leaves alone, so that parts of the tree are built at the same time, each in nodes of its own.
+
+// The least number of leaves of a child, a power of eight, with which so many slots hold them all.
+uint32_t CapacityFor(uint32_t count, uint32_t slots) {
+    uint64_t capacity = 8;
+    while (capacity * slots < count) capacity *= 8;
+    return static_cast<uint32_t>(capacity);
+}
+
+uint32_t NodesOf(uint32_t count, uint32_t capacity);
+// Below a node of eight slots.
+uint32_t NodesBelow(uint32_t count) { return count <= 8 ? 0 : NodesOf(count, CapacityFor(count, 8)); }
+// Children of the given capacity, a single leaf being none, with all below them.
+uint32_t NodesOf(uint32_t count, uint32_t capacity) {
+    const uint32_t full = count / capacity, rest = count % capacity;
+    return (capacity > 1 ? full * (1 + NodesBelow(capacity)) : 0) + (rest > 1 ? 1 + NodesBelow(rest) : 0);
+}
+
+}  // namespace
+
+void BoundsTree::Rebuild(const ParallelLoop& parallel) {
     if (size_ == 0) return;
     GatherLeaves();
-    nodeCount_ = 0;
+    const uint32_t large = MoveLargeLeavesToBack(), small = size_ - large;
+    // One or two large leaves lie in the root itself, more of them in a child of it.
+    const uint32_t ofLarge = large <= 2 ? 1 : large, slots = kPendingSlot - (large <= 2 ? large : 1);
+    const uint32_t ofSmall = small <= slots ? 1 : CapacityFor(small, slots);
+    const uint32_t first = 1 + NodesOf(large, ofLarge);
+    const uint32_t nodes = first + NodesOf(small, ofSmall);
+    if (nodes > nodes_.size()) nodes_.resize(nodes);
+    parts_.clear();
+    if (large > 0) parts_.push_back({kRoot, 0, small, large, ofLarge, 1});
+    parts_.push_back({kRoot, kPendingSlot - static_cast<int>(slots), 0, small, ofSmall, first});
+    const size_t whole = parts_.size();
+    PlanParts();
+    // All that may fail is done.
+    nodeCount_ = nodes;
     freeNode_ = kNoNode;
     pendingHeight_ = pendingCount_ = changesSinceOptimize_ = 0;
-    area_ = debt_ = 0;
-    const uint32_t root = AllocateNode();
-    const uint32_t large = MoveLargeLeavesToBack();
-    int slot = 0;
-    // One or two large leaves lie in the root itself, more of them in a child of it.
-    Packed box = EmptyBox();
-    if (large > 0) BuildChildren(root, size_ - large, large, large <= 2 ? 1 : large, slot, box);
-    BuildNode(root, 0, size_ - large, slot, kPendingSlot);
+    debt_ = 0;
+    std::fill_n(insertedExtents_, 3, 0.0);
+    ResetNode(kRoot);
+    BuildParts(whole, parallel);
     builtArea_ = area_;
+}
+
+// Lists the halves into which large parts are split, and the parts below nodes with many leaves, behind those that they
+// replace.
+void BoundsTree::PlanParts() {
+    for (size_t i = 0; i < parts_.size(); ++i) {
+        const Part part = parts_[i];
+        if (part.IsSmall()) continue;
+        if (part.IsNode()) {
+            parts_.push_back(
+                {part.nextNode, 0, part.first, part.count, CapacityFor(part.count, kWidth), part.nextNode + 1});
+        } else {
+            parts_.push_back(part.Left());
+            parts_.push_back(part.Right());
+        }
+    }
+}
+
+// Splits the large parts, one round of halves after the other, and builds the small ones, at the same time. The result
+// does not depend on the threads. whole: how many parts were not planned.
+void BoundsTree::BuildParts(size_t whole, const ParallelLoop& parallel) {
+    for (size_t begin = 0, end = whole; begin < end;) {
+        RunLoop(parallel, static_cast<uint32_t>(end - begin), [this, begin](uint32_t i) {
+            const Part& part = parts_[begin + i];
+            if (!part.IsSmall() && !part.IsNode()) SplitAt(part.first, part.count, part.CountOfLeft());
+        });
+        size_t next = end;
+        for (; begin < end; ++begin) {
+            const Part& part = parts_[begin];
+            if (part.IsSmall()) continue;
+            next += part.IsNode() ? 1 : 2;
+            if (!part.IsNode()) continue;
+            ResetNode(part.nextNode);
+            Link(part.node, part.slot, part.nextNode, EmptyBox());
+        }
+        end = next;
+    }
+    RunLoop(parallel, static_cast<uint32_t>(parts_.size()), [this](uint32_t i) {
+        Part& part = parts_[i];
+        if (part.IsSmall()) BuildPart(part, part.area);
+    });
+    area_ = 0;
+    for (size_t i = parts_.size(); i-- > 0;) {  // children before parents
+        const Part& part = parts_[i];
+        area_ += part.area;
+        if (part.IsSmall() || !part.IsNode()) continue;
+        const Packed box = Union(nodes_[part.nextNode]);
+        SetSlotBox(part.node, part.slot, box);
+        area_ += HalfArea(box);
+    }
+}
+
+// The left half of the children, all full, and the rest.
+uint32_t BoundsTree::Part::CountOfLeft() const { return ((count - 1) / capacity + 1) / 2 * capacity; }
+BoundsTree::Part BoundsTree::Part::Left() const {
+    Part left = *this;
+    left.count = CountOfLeft();
+    return left;
+}
+BoundsTree::Part BoundsTree::Part::Right() const {
+    Part right = *this;
+    const uint32_t left = CountOfLeft();
+    right.slot += static_cast<int>(left / capacity);
+    right.first += left;
+    right.count -= left;
+    right.nextNode += NodesOf(left, capacity);
+    return right;
+}
+
+// Fills the slots of a part. Adds up the areas of the new nodes, and returns the box around them.
+BoundsTree::Packed BoundsTree::BuildPart(const Part& part, double& area) {
+    if (part.count > part.capacity) {
+        SplitAt(part.first, part.count, part.CountOfLeft());
+        const Packed left = BuildPart(part.Left(), area), right = BuildPart(part.Right(), area);
+        Packed both;
+        Min(Wide<8>::Load(left.lane), Wide<8>::Load(right.lane)).Store(both.lane);
+        return both;
+    }
+    Packed box = gathered_[part.first];
+    if (part.count == 1) {
+        SetLeaf(part.node, part.slot, std::bit_cast<uint32_t>(box.lane[kIdLane]), box);
+        return box;
+    }
+    const uint32_t node = part.nextNode;
+    ResetNode(node);
+    if (part.count > kWidth) {
+        box = BuildPart({node, 0, part.first, part.count, CapacityFor(part.count, kWidth), node + 1}, area);
+    } else {
+        Wide<8> total(std::numeric_limits<float>::infinity());
+        for (uint32_t i = 0; i < part.count; ++i) {
+            const Packed& leaf = gathered_[part.first + i];
+            SetLeaf(node, static_cast<int>(i), std::bit_cast<uint32_t>(leaf.lane[kIdLane]), leaf);
+            total = Min(total, Wide<8>::Load(leaf.lane));
+        }
+        total.Store(box.lane);
+    }
+    Link(part.node, part.slot, node, box);
+    area += HalfArea(box);
+    return box;
 }
 
 // Floors and walls among small boxes would enlarge every node above them. Moves the few leaves that are longer than a
@@ -150,49 +281,6 @@ uint32_t BoundsTree::MoveLargeLeavesToBack() {
     if (large == 0 || large > size_ / kWidth) return 0;
     Partition(gathered_.data(), size_, isSmall);
     return large;
-}
-
-// Fills the slots from `slot` to before `end` of a node with the gathered leaves [first, first + count). Returns the
-// box around them.
-BoundsTree::Packed BoundsTree::BuildNode(uint32_t node, uint32_t first, uint32_t count, int slot, int end) {
-    Wide<8> total(std::numeric_limits<float>::infinity());
-    Packed box;
-    const uint32_t slots = static_cast<uint32_t>(end - slot);
-    if (count <= slots) {
-        for (uint32_t i = first; i < first + count; ++i) {
-            SetLeaf(node, slot++, std::bit_cast<uint32_t>(gathered_[i].lane[kIdLane]), gathered_[i]);
-            total = Min(total, Wide<8>::Load(gathered_[i].lane));
-        }
-        total.Store(box.lane);
-        return box;
-    }
-    uint64_t capacity = kWidth;
-    while (capacity * slots < count) capacity *= kWidth;
-    total.Store(box.lane);
-    BuildChildren(node, first, count, static_cast<uint32_t>(capacity), slot, box);
-    return box;
-}
-
-// Halves the range until each part fits a child of the given capacity, and puts the children into the next slots.
-void BoundsTree::BuildChildren(uint32_t node, uint32_t first, uint32_t count, uint32_t capacity, int& slot,
-                               Packed& total) {
-    if (count > capacity) {
-        const uint32_t units = (count - 1) / capacity + 1;
-        const uint32_t left = units / 2 * capacity;
-        SplitAt(first, count, left);
-        BuildChildren(node, first, left, capacity, slot, total);
-        BuildChildren(node, first + left, count - left, capacity, slot, total);
-        return;
-    }
-    Packed box = gathered_[first];
-    if (count == 1) {
-        SetLeaf(node, slot++, std::bit_cast<uint32_t>(box.lane[kIdLane]), box);
-    } else {
-        const uint32_t child = AllocateNode();
-        box = BuildNode(child, first, count, 0, kWidth);
-        SetInner(node, slot++, child, box);
-    }
-    Min(Wide<8>::Load(total.lane), Wide<8>::Load(box.lane)).Store(total.lane);
 }
 
 // Reorders a range so that its first `left` leaves have the smaller centers, along the axis on which the centers lie

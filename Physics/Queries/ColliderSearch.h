@@ -97,8 +97,12 @@ private:
 class QueryScope {
 public:
     explicit QueryScope(WorldState& world) : shared_(world.lock, WorldLock::Access::Queries) {
-        if (shared_.Refusal()) ReportMisuse(*shared_.Refusal());
-        else world.outsideFatBounds.Refresh(world.bodies, world.colliders);
+        if (shared_.Refusal()) {
+            ReportMisuse(*shared_.Refusal());
+            return;
+        }
+        world.pendingTrees.Build(world.colliders, *world.jobs);
+        world.outsideFatBounds.Refresh(world.bodies, world.colliders);
     }
     explicit operator bool() const { return !shared_.Refusal(); }
 

@@ -269,6 +269,7 @@ void VisitEfforts(const SolverSettings& settings, const BodyStore& bodies, const
 
 void RunStep(WorldState& world, StepState& state, double dt) {
     ForgetRemoved(world);
+    world.pendingTrees.Suspend();
     BeginReport(world, state);
     if (world.observer) world.observer->BeginStep(world.step);
     if (dt >= kShortestStep) {
@@ -287,6 +288,7 @@ void RunStep(WorldState& world, StepState& state, double dt) {
         world.outsideFatBounds.MarkStale();
         for (const WorkerFindings& f : state.findings) state.report.libccd += f.libccd;
     }
+    world.pendingTrees.Note();
     CountBodies(world, state.solver, state.report);
     if (world.observer) world.observer->EndStep(world.step);
 }

@@ -91,8 +91,10 @@ void UpdateTrees(ColliderStore& store, JobSystem& jobs) {
         const Collider& collider = store.colliders[i];
         if (!together || !collider.moving || collider.sensor) store.TreeOf(collider).Update(i, collider.fat);
     }
-    store.movingTree.Optimize();
-    store.staticTree.Optimize();
+    // Each collider that moved searches both trees, as far as it is not static itself.
+    const uint32_t searches = static_cast<uint32_t>(store.moved.size());
+    store.movingTree.Optimize(searches, LoopOn(jobs));
+    store.staticTree.Optimize(searches, LoopOn(jobs));
 }
 
 }  // namespace

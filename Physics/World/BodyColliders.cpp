@@ -44,6 +44,7 @@ void Insert(WorldState& world, uint32_t body, uint32_t index) {
     collider.sensor = world.bodies.cold[body].isSensor;
     SetFatBounds(world.settings, world.bodies, world.colliders, index);
     world.colliders.TreeOf(collider).Insert(index, collider.fat);
+    world.pendingTrees.Note();
 }
 
 // A sensor supports no bodies.
@@ -184,6 +185,7 @@ void MoveToItsTree(WorldState& world, uint32_t body) {
         store.TreeOf(collider).Insert(i, collider.fat);
         world.outsideFatBounds.Forget(i);
     });
+    world.pendingTrees.Note();
     RequeueColliders(world.bodies, world.colliders, body);
 }
 

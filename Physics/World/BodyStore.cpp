@@ -70,7 +70,9 @@ void BodyStore::MarkAwake(uint32_t index) {
 void BodyStore::MarkPlaced(uint32_t index) {
     if (cold[index].placed) return;
     cold[index].placed = true;
-    placed.push_back(index);
+    // One that sleeps is listed as it wakes; until then the list need only say that there is one.
+    if (dynamics[index].motion != MotionType::Dynamic || dynamics[index].awake || placed.empty())
+        placed.push_back(index);
 }
 
 void BodyStore::ForgetPlaced() {

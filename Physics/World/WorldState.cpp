@@ -6,7 +6,7 @@ namespace fulcrum {
 
 size_t HeapBytes(const WorldState& world) {
     const auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, pairs, joints, coloring, sleeping,
-                 sensors, removed, step, lock, outsideFatBounds, seenPoses, heededShapeVersion] = world;
+                 sensors, removed, step, lock, outsideFatBounds, pendingTrees, seenPoses, heededShapeVersion] = world;
     return HeapBytes(settings, listener, bodies, colliders, pairs, joints, coloring, sleeping, sensors, removed, step,
                      outsideFatBounds, seenPoses, heededShapeVersion);
 }

@@ -8,6 +8,7 @@
 #include <Fulcrum/Physics/World/CollidersOutsideFatBounds.h>
 #include <Fulcrum/Physics/World/JointStore.h>
 #include <Fulcrum/Physics/World/PairStore.h>
+#include <Fulcrum/Physics/World/PendingTrees.h>
 #include <Fulcrum/Physics/World/SeenPoses.h>
 #include <Fulcrum/Physics/World/SensorStore.h>
 #include <Fulcrum/Physics/World/SleepingIslands.h>
@@ -45,6 +46,7 @@ struct WorldState {
     // Lock for queries.
     WorldLock lock;
     CollidersOutsideFatBounds outsideFatBounds;
+    PendingTrees pendingTrees;
     SeenPoses seenPoses;
     uint64_t heededShapeVersion = 0;  // see ShapeEdits.h
 };
