@@ -75,6 +75,11 @@ public:
     uint64_t Version() const { return version_; }
     uint64_t JointVersion() const { return jointVersion_; }  // the same, of joints alone
     void ReserveBodies(uint32_t count);
+    // Which list an entry needs is known when it is added, too late to ask for memory that may be refused. After
+    // Postpone, up to `entries` of them wait for Settle where their list has no room, which is to be called before the
+    // lists are read, or anything is postponed anew: colors and slots are the same.
+    void Postpone(size_t entries);
+    void Settle();
     size_t MemoryUsed() const;
 
 private:
@@ -85,12 +90,24 @@ private:
         if (!entry.fixedB) visit(entry.bodyB);
     }
     Array<Entry>& List(uint8_t color, Kind kind) { return colors_[color].lists[static_cast<size_t>(kind)]; }
+    // An entry that belongs to the end of its list, behind those of it that are postponed before.
+    struct Postponed {
+        Entry entry;
+        uint8_t color;
+        Kind kind;
+    };
+    size_t PostponedOf(uint8_t color, Kind kind) const;
+    uint32_t AddToFull(uint8_t color, Kind kind, const Entry& entry);
+    Entry TakeLast(uint8_t color, Kind kind);
+    Entry& EntryAt(uint8_t color, Kind kind, uint32_t slot);
 
     Array<Color> colors_ = Array<Color>(kColors + 1);
     Array<uint64_t> used_;       // by body: bit c is set if a constraint of color c moves it
     Array<uint32_t> overflows_;  // by body: number of its constraints without a color
     uint32_t size_ = 0;
     uint64_t version_ = 1, jointVersion_ = 1;
+    Array<Postponed> postponed_;
+    bool postpones_ = false;
 };
 
 }  // namespace fulcrum

@@ -33,6 +33,7 @@ struct JobRange {
     uint32_t worker;
 };
 
+// The engine's jobs throw nothing: what happens in them is thrown where they are waited for.
 class JobSystem {
 public:
     virtual ~JobSystem() = default;

@@ -16,6 +16,7 @@
 // word are coherent.
 //
 // The state is on the caller's stack: RunOnWorkers returns after all that began have returned, and starts none later.
+#include <Fulcrum/Jobs/FirstException.h>
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Jobs/Spin.h>
 
@@ -54,8 +55,10 @@ public:
         : blockCounts_(blockCounts), kernel_(kernel), shareCount_(std::min(workers, kMaximumShares)) {}
 
     void Work(uint32_t worker);
+    void Rethrow() const { thrown_.Rethrow(); }
 
 private:
+    void Run(uint32_t phase, uint32_t block, uint32_t worker);
     void Await(uint64_t blocks);
     void RunWithOthers(uint32_t phase, uint32_t worker, uint64_t doneAtEnd);
     uint32_t RunOwnShare(uint32_t phase, uint32_t worker);
@@ -75,9 +78,15 @@ private:
     const FunctionRef<void(uint32_t, uint32_t, uint32_t)> kernel_;
     const uint32_t shareCount_;
     std::atomic<uint32_t> arrived_{0};
+    FirstException thrown_;
     alignas(64) std::atomic<uint64_t> done_{0};
     Share shares_[kMaximumShares];
 };
+
+// After a kernel has thrown the blocks are only counted, so that nobody waits for them.
+void PhaseRunner::Run(uint32_t phase, uint32_t block, uint32_t worker) {
+    if (!thrown_.HasAny()) thrown_.Run([&] { kernel_(phase, block, worker); });
+}
 
 void PhaseRunner::Await(uint64_t blocks) {
     Spin spin(kBarrierSpin);
@@ -107,7 +116,7 @@ uint32_t PhaseRunner::RunOwnShare(uint32_t phase, uint32_t worker) {
     for (;;) {
         const uint32_t block = Claim(phase, worker % shareCount_, Side::Front);
         if (block == kNone) return ran;
-        kernel_(phase, block, worker);
+        Run(phase, block, worker);
         ++ran;
     }
 }
@@ -119,7 +128,7 @@ uint32_t PhaseRunner::RunOtherShares(uint32_t phase, uint32_t worker) {
         for (;;) {
             const uint32_t block = Claim(phase, victim, Side::Back);
             if (block == kNone) break;
-            kernel_(phase, block, worker);
+            Run(phase, block, worker);
             ++ran;
         }
     }
@@ -150,7 +159,7 @@ void PhaseRunner::Work(uint32_t worker) {
         const uint32_t count = blockCounts_[phase];
         if (count == 1 && leads) {
             if (published) Await(earlier);
-            kernel_(phase, 0, worker);
+            Run(phase, 0, worker);
             published = false;
         } else if (count > 1) {
             if (!published) done_.store(earlier, std::memory_order_release);
@@ -171,7 +180,7 @@ void RunPhases(JobSystem& jobs, std::span<const uint32_t> blockCounts,
     if (workers > 1 && largest > 1 && largest < kMaximumBlocks && blockCounts.size() <= kMaximumPhases) {
         PhaseRunner runner(blockCounts, workers, kernel);
         jobs.RunOnWorkers([&](uint32_t worker) { runner.Work(worker); });
-        return;
+        return runner.Rethrow();
     }
     // One range of one item: on the calling thread, under its own worker number.
     jobs.ParallelFor(1, 1, [&](JobRange range) {

@@ -14,7 +14,8 @@ namespace fulcrum {
 //
 // Each worker has the same contiguous share of the blocks in every phase with the same count, unless a worker stalls,
 // so that its data stay in its cache. A phase of one block is run by the leader, nearly always the caller, and needs no
-// barrier if another such phase follows. Blocks should take 1 us or more. A kernel must not throw.
+// barrier if another such phase follows. Blocks should take 1 us or more. What a kernel throws is thrown by the call;
+// some blocks have not been run then.
 //
 // No helper thread is required: helpers may join at any time, and blocks of workers that do not come are taken by
 // others. Phases of 2^20 blocks or more, and more than 2^24 phases, are run on one thread alone.

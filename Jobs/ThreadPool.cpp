@@ -10,11 +10,13 @@
 // The opening store releases `job` and the caller's earlier writes, and the helper's entry acquires them; the helper's
 // exit releases its writes, and the caller acquires them where it shuts the gate or waits. Further entries and exits
 // are read-modify-writes, so they keep the release sequence.
+#include <Fulcrum/Jobs/FirstException.h>
 #include <Fulcrum/Jobs/Spin.h>
 #include <Fulcrum/Jobs/ThreadPool.h>
 
 #include <algorithm>
 #include <atomic>
+#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -79,7 +81,7 @@ ThreadPool::ThreadPool(uint32_t workers) : state_(std::make_unique<State>()) {
             state_->threads.emplace_back([this, worker] { RunHelper(worker); });
     } catch (const std::system_error&) {
         // The system refuses more threads: continue with those that started.
-    }
+    } catch (const std::bad_alloc&) {}
     helperCount_ = static_cast<uint32_t>(state_->threads.size());
 }
 
@@ -99,8 +101,10 @@ bool ThreadPool::TryTakeHelpers() {
 }
 
 void ThreadPool::RunOnWorkers(FunctionRef<void(uint32_t)> job) {
-    if (TryTakeHelpers()) Dispatch(job);
-    else job(CallersWorker());
+    if (!TryTakeHelpers()) return job(CallersWorker());
+    FirstException thrown;
+    Dispatch([&](uint32_t worker) { thrown.Run([&] { job(worker); }); });
+    thrown.Rethrow();
 }
 
 void ThreadPool::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<void(JobRange)> job) {
@@ -118,15 +122,18 @@ void ThreadPool::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<
         state_->shares[worker].blocks.store(Pack(begin, end), std::memory_order_relaxed);
         begin = end;
     }
-    Dispatch([&](uint32_t worker) {
-        for (;;) {
+    FirstException thrown;
+    const auto work = [&](uint32_t worker) {
+        while (!thrown.HasAny()) {
             Blocks piece = TakeFromOwnShare(worker);
             if (piece.begin == piece.end) piece = Steal(worker);
             if (piece.begin == piece.end) return;  // other workers finish the blocks that they have taken
             const auto last = static_cast<uint32_t>(std::min<uint64_t>(uint64_t{piece.end} * blockSize, count));
             job({piece.begin * blockSize, last, worker});
         }
-    });
+    };
+    Dispatch([&](uint32_t worker) { thrown.Run([&] { work(worker); }); });
+    thrown.Rethrow();
 }
 
 // The blocks in a word are taken at most once: a successful exchange means that they were there at that moment, so ABA

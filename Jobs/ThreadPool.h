@@ -15,7 +15,8 @@ namespace fulcrum {
 // that thread already has. So does a call from a second thread outside the pool, as worker 0 of its own call: ids are
 // unique within a call, and memory they select must belong to that call.
 //
-// Jobs must not throw. Nothing is allocated after construction.
+// What a job throws is thrown by the call, once all workers are done; some ranges may not have been run then. Nothing
+// is allocated after construction.
 class ThreadPool final : public JobSystem {
 public:
     static constexpr uint32_t kMaximumWorkers = 64;

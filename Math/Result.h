@@ -25,6 +25,8 @@ enum class ErrorCode {
     Unsupported,     // valid, but not for this kind of body or shape
     NotAllowedHere,  // a call from a callback of the engine, or under Queries().Hold(), that would have to wait for
                      // itself
+    BrokenWorld,  // an earlier step or call was cut short by an exception, as when memory ran out: the world can only
+                  // be destroyed, or restored from a snapshot
 };
 
 struct Error {

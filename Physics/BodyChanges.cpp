@@ -9,6 +9,7 @@
 #include <Fulcrum/Physics/World/FatBounds.h>
 #include <Fulcrum/Physics/World/Filters.h>
 #include <Fulcrum/Physics/World/Materials.h>
+#include <Fulcrum/Physics/World/Reservations.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 #include <Fulcrum/Physics/World/SteadyPushes.h>
 #include <Fulcrum/Physics/World/TargetChanges.h>
@@ -30,9 +31,9 @@ Quaternion NormalizedUnlessItIs(const Quaternion& q) {
     return std::fabs(squared - 1) <= kRounding ? q : Normalized(q);
 }
 
-// Ends the contacts that the body's filters forbid, and searches for those that they allow.
-void Refilter(WorldState& world, uint32_t body) {
-    RemoveForbiddenPairs(world, body);
+// Ends the contacts, of the body's pairs, that its filters forbid, and searches for those that they allow.
+void Refilter(WorldState& world, uint32_t body, std::span<const uint32_t> pairs) {
+    RemoveForbiddenPairs(world, pairs);
     WakeBody(world, body);
     WakeNeighbors(world, body);
     if (world.bodies.dynamics[body].motion == MotionType::Dynamic) world.bodies.MarkPlaced(body);
@@ -58,11 +59,15 @@ KeptMass AnyMassOf(const BodyStore& bodies, uint32_t body) {
     return d.motion == MotionType::Dynamic ? MassOf(d) : KeptMassOf(bodies.cold[body]);
 }
 
-void SetAnyMass(WorldState& world, uint32_t body, const KeptMass& mass) {
+void SetAnyMass(WorldState& world, const WorldLock::Exclusive& alone, uint32_t body, const KeptMass& mass) {
+    const bool isDynamic = world.bodies.dynamics[body].motion == MotionType::Dynamic;
+    std::unique_ptr<KeptMass> kept = isDynamic ? nullptr : std::make_unique<KeptMass>(mass);
+    if (isDynamic) ReserveForChange(world);
+    alone.Begin();
     BodyCold& cold = world.bodies.cold[body];
     if (cold.children) cold.children->massUnit = double{mass.mass} / RelativeMassOf(*cold.shape);
-    if (world.bodies.dynamics[body].motion != MotionType::Dynamic) {
-        cold.keptMass = std::make_unique<KeptMass>(mass);
+    if (!isDynamic) {
+        cold.keptMass = std::move(kept);
         return;
     }
     SetMass(world.bodies.dynamics[body], mass.principalAxes, mass.mass, mass.inertia);
@@ -73,9 +78,9 @@ void SetAnyMass(WorldState& world, uint32_t body, const KeptMass& mass) {
 }
 
 // What only dynamic bodies have.
-void LoseMass(BodyStore& bodies, uint32_t body) {
+void LoseMass(BodyStore& bodies, uint32_t body, std::unique_ptr<KeptMass> kept) {
     BodyDynamics& d = bodies.dynamics[body];
-    bodies.cold[body].keptMass = std::make_unique<KeptMass>(MassOf(d));
+    bodies.cold[body].keptMass = std::move(kept);
     d.inverseMass = 0;
     for (float& inverse : d.inverseInertia) inverse = 0;
     d.spherical = false;
@@ -83,7 +88,7 @@ void LoseMass(BodyStore& bodies, uint32_t body) {
     d.dispersing = false;
     d.slowSeconds = 0;
     ForgetPush(bodies, body);
-    bodies.cold[body].placed = false;
+    bodies.UnmarkPlaced(body);
     std::erase(bodies.placed, body);
     bodies.unconstrained[body] = {};
     for (float& a : bodies.poses[body].acceleration) a = 0;
@@ -112,12 +117,18 @@ Status BodyInterface::SetMotionType(BodyId id, MotionType motion) {
         const KeptMass mass = KeptMassOf(bodies.cold[body]);
         if (MaybeError e = CheckInverses("shape", "shape", mass.mass, mass.inertia)) return *e;
     }
+    std::unique_ptr<KeptMass> kept = d.motion == MotionType::Dynamic ? std::make_unique<KeptMass>(MassOf(d)) : nullptr;
+    const Array<uint32_t> pairs = PairsOf(world_, body);
+    Additions more{.removedPairs = CountPairsOf(world_, body)};
+    VisitColliders(world_, body,
+                   [&](uint32_t) { ++more.InTree(motion != MotionType::Static, bodies.cold[body].isSensor); });
+    ReserveForChange(world_, more);
+    change.Begin();
     WakeBody(world_, body);
     WakeNeighbors(world_, body);
     WakeJoined(world_, body);
-    VisitPairsOf(bodies, world_.colliders, world_.pairs, {&body, 1},
-                 [&](uint32_t pair) { RemovePair(world_.pairs, world_.coloring, pair); });
-    if (d.motion == MotionType::Dynamic) LoseMass(bodies, body);
+    for (const uint32_t pair : pairs) RemovePair(world_.pairs, world_.coloring, pair);
+    if (d.motion == MotionType::Dynamic) LoseMass(bodies, body, std::move(kept));
     if (motion == MotionType::Dynamic) GainMass(bodies, body);
     if (bodies.singleMoves.Erase(body)) bodies.cold[body].singleMove = SingleMove::None;
     d.motion = motion;
@@ -147,7 +158,7 @@ Status BodyInterface::SetMass(BodyId id, float mass) {
     next.inertia *= mass / next.mass;
     next.mass = mass;
     if (MaybeError e = CheckInverses("mass", "mass", next.mass, next.inertia)) return *e;
-    SetAnyMass(world_, id.index, next);
+    SetAnyMass(world_, change, id.index, next);
     return Done{};
 }
 
@@ -166,7 +177,7 @@ Status BodyInterface::SetMass(BodyId id, float mass, const SymmetricMatrix3& ine
         return Error{ErrorCode::NonPositive, "inertia has a principal moment that is not larger than 0"};
     const KeptMass next{mass, Vector3(principal.values.cast<float>()), principal.rotation};
     if (MaybeError e = CheckInverses("mass", "inertia", next.mass, next.inertia)) return *e;
-    SetAnyMass(world_, id.index, next);
+    SetAnyMass(world_, change, id.index, next);
     return Done{};
 }
 
@@ -195,7 +206,10 @@ Status BodyInterface::SetPoses(std::span<const BodyId> ids, std::span<const Pose
     std::ranges::sort(sorted);
     if (std::ranges::adjacent_find(sorted) != sorted.end())
         return Error{ErrorCode::Unsupported, "a body is named twice; it can be in one place"};
-    Teleport(world_, places);
+    const PosesBefore before(world_.bodies, places);
+    ReserveForChange(world_, {.placed = places.size()});
+    change.Begin();
+    Teleport(world_, places, before);
     return Done{};
 }
 
@@ -209,11 +223,13 @@ Status BodyInterface::SetMaterial(BodyId id, const Material& material) {
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = Check(material)) return *e;
+    const Array<uint32_t> pairs = PairsOf(world_, id.index);
+    ReserveForChange(world_);
+    change.Begin();
     world_.bodies.cold[id.index].material = material;
-    VisitPairsOf(world_.bodies, world_.colliders, world_.pairs, {&id.index, 1}, [&](uint32_t first) {
-        for (uint32_t pair = first; pair != PairStore::kNone; pair = world_.pairs.MoreOf(pair))
+    for (uint32_t pair : pairs)
+        for (; pair != PairStore::kNone; pair = world_.pairs.MoreOf(pair))
             CombineMaterials(world_.bodies, world_.colliders, world_.pairs, pair);
-    });
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);
     return Done{};
@@ -230,21 +246,36 @@ Status BodyInterface::SetLayer(BodyId id, uint8_t layer) {
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("layer", layer, 0, 31)) return *e;
     BodyDynamics& d = world_.bodies.dynamics[id.index];
+    const Array<uint32_t> pairs = PairsOf(world_, id.index);
+    ReserveForChange(world_, {.removedPairs = CountPairsOf(world_, id.index)});
+    change.Begin();
     d.layer = layer & 31u;
     ColliderStore& colliders = world_.colliders;
     if (!world_.bodies.cold[id.index].isSensor)
         (d.motion != MotionType::Static ? colliders.movingLayers : colliders.staticLayers) |= 1u << layer;
     if (!world_.sensors.IsEmpty()) world_.sensors.changed.push_back(id.index);
-    Refilter(world_, id.index);
+    Refilter(world_, id.index, pairs);
     return Done{};
 }
+
+namespace {
+
+void ChangeFilter(WorldState& world, const WorldLock::Exclusive& alone, uint32_t body, const BodyFilter& filter) {
+    std::unique_ptr<BodyFilter> own = BodyStore::MakeFilter(filter);
+    const Array<uint32_t> pairs = PairsOf(world, body);
+    ReserveForChange(world, {.removedPairs = CountPairsOf(world, body)});
+    alone.Begin();
+    world.bodies.SetFilter(body, std::move(own));
+    Refilter(world, body, pairs);
+}
+
+}  // namespace
 
 Status BodyInterface::SetCategoryAndMask(BodyId id, uint64_t category, uint64_t mask) {
     const WorldChange<&BodyInterface::SetCategoryAndMask> change(world_, id, category, mask);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
-    world_.bodies.SetFilter(id.index, {category, mask, GetGroup(id)});
-    Refilter(world_, id.index);
+    ChangeFilter(world_, change, id.index, {category, mask, GetGroup(id)});
     return Done{};
 }
 
@@ -252,8 +283,7 @@ Status BodyInterface::SetGroup(BodyId id, const CollisionGroup& group) {
     const WorldChange<&BodyInterface::SetGroup> change(world_, id, group);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
-    world_.bodies.SetFilter(id.index, {GetCategory(id), GetMask(id), group});
-    Refilter(world_, id.index);
+    ChangeFilter(world_, change, id.index, {GetCategory(id), GetMask(id), group});
     return Done{};
 }
 
@@ -262,6 +292,8 @@ Status BodyInterface::SetGravityFactor(BodyId id, float factor) {
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("gravityFactor", factor, -1e6, 1e6)) return *e;
+    ReserveToWake(world_, id.index);
+    change.Begin();
     world_.bodies.dynamics[id.index].gravityFactor = factor;
     WakeBody(world_, id.index);
     return Done{};
@@ -309,6 +341,8 @@ Status BodyInterface::SetGravity(BodyId id, const std::optional<Vector3>& gravit
         if (MaybeError e = FirstOf(CheckFinite("gravity", *gravity),
                                    CheckRange("gravity", double{gravity->cwiseAbs().maxCoeff()}, 0, kMost)))
             return *e;
+    ReserveToWake(world_, id.index);
+    change.Begin();
     BodyCold& cold = world_.bodies.cold[id.index];
     cold.hasGravity = gravity.has_value();
     cold.gravity = gravity.value_or(Vector3(Vector3::Zero()));
@@ -322,6 +356,8 @@ Status BodyInterface::SetDamping(BodyId id, float linear, float angular) {
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = FirstOf(CheckNotNegative("linear", linear), CheckNotNegative("angular", angular))) return *e;
+    ReserveToWake(world_, id.index);
+    change.Begin();
     BodyDynamics& d = world_.bodies.dynamics[id.index];
     // Much damping may be all that held it.
     if (d.linearDamping != linear || d.angularDamping != angular) WakeBody(world_, id.index);
@@ -335,6 +371,8 @@ Status BodyInterface::SetLockedAxes(BodyId id, LockedAxes axes) {
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     if (MaybeError e = CheckRange("axes", static_cast<uint8_t>(axes), 0, 63)) return *e;
+    ReserveToWake(world_, id.index);
+    change.Begin();
     world_.bodies.dynamics[id.index].lockedAxes = axes;
     world_.bodies.UpdateInertia(id.index);
     if (world_.joints.HasAny(id.index)) world_.coloring.Invalidate();
@@ -349,6 +387,8 @@ Status BodyInterface::SetMaxSpeeds(BodyId id, float linear, float angular) {
     if (MaybeError e = FirstOf(CheckPositive("linear", linear), CheckPositive("angular", angular))) return *e;
     BodyDynamics& d = world_.bodies.dynamics[id.index];
     const float mostLinear = std::min(linear, kFastestLinear), mostAngular = std::min(angular, kFastestAngular);
+    ReserveToWake(world_, id.index);
+    change.Begin();
     // A limit may be all that held it.
     if (d.maxLinearSpeed != mostLinear || d.maxAngularSpeed != mostAngular) WakeBody(world_, id.index);
     d.maxLinearSpeed = mostLinear;
@@ -368,6 +408,8 @@ Status BodyInterface::SetAllowSleep(BodyId id, bool allowSleep) {
     const WorldChange<&BodyInterface::SetAllowSleep> change(world_, id, allowSleep);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
+    if (!allowSleep) ReserveToWake(world_, id.index);
+    change.Begin();
     world_.bodies.dynamics[id.index].allowSleep = allowSleep;
     if (!allowSleep) WakeBody(world_, id.index);
     return Done{};

@@ -10,6 +10,7 @@
 #include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
+#include <Fulcrum/Physics/World/Reservations.h>
 #include <Fulcrum/Physics/World/Sleeping.h>
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 #include <Fulcrum/Physics/World/SteadyPushes.h>
@@ -31,7 +32,7 @@ Pose CenterPose(const Shape& shape, const Position& position, const Quaternion& 
     return {position + Rotate(q, shape.Mass().centerOfMass).cast<double>(), q};
 }
 
-void FillDynamics(BodyDynamics& d, BodyCold& cold, const BodySettings& s) {
+void FillDynamics(BodyDynamics& d, std::unique_ptr<KeptMass>& keptMass, const BodySettings& s) {
     const MassProperties& mass = s.shape->Mass();
     d.motion = s.motion;
     d.lockedAxes = s.lockedAxes;
@@ -53,7 +54,7 @@ void FillDynamics(BodyDynamics& d, BodyCold& cold, const BodySettings& s) {
     const Vector3 inertia =
         s.inertia.isZero(0) ? Vector3(mass.principalInertia * (kilograms / mass.volume)) : s.inertia;
     if (isDynamic) SetMass(d, mass.principalAxes, kilograms, inertia);
-    else cold.keptMass = std::make_unique<KeptMass>(KeptMass{kilograms, inertia, mass.principalAxes});
+    else keptMass = std::make_unique<KeptMass>(KeptMass{kilograms, inertia, mass.principalAxes});
 }
 
 // Called for the first body of an empty world: moves the origin of the bounds near it. Limited so that positions near
@@ -90,12 +91,39 @@ void PlaceStatic(WorldState& world, uint32_t body) {
     if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
 }
 
-// The settings must be valid.
-BodyId Add(WorldState& world, const BodySettings& settings) {
-    if (settings.motion == MotionType::Static) world.colliders.movingTree.Optimize(1);  // PlaceStatic asks it
+// What a body has of its own beside its place in the arrays. The settings must be valid.
+struct NewBody {
+    explicit NewBody(const BodySettings& settings)
+        : shape(settings.shape), filter(BodyStore::MakeFilter({settings.category, settings.mask, settings.group})) {
+        FillDynamics(dynamics, keptMass, settings);
+    }
+    OwnShape shape;
+    std::unique_ptr<BodyFilter> filter;
+    BodyDynamics dynamics;
+    std::unique_ptr<KeptMass> keptMass;
+};
+
+void Include(Additions& more, const ColliderStore& colliders, const BodySettings& settings) {
+    const uint32_t count = ColliderCountOf(*settings.shape);
+    ++more.bodies;
+    ++more.placed;
+    more.sensors += settings.isSensor;
+    more.colliders += colliders.HasFree(count) ? 0 : count;
+    more.InTree(settings.motion != MotionType::Static, settings.isSensor) += count;
+}
+
+// PlaceStatic will ask the tree of what may move. Before ReserveForChange, since a rebuild asks for memory.
+void OptimizeFor(WorldState& world, std::span<const BodySettings> bodies) {
+    const auto isStatic = [](const BodySettings& s) { return s.motion == MotionType::Static; };
+    const auto count = static_cast<uint32_t>(std::count_if(bodies.begin(), bodies.end(), isStatic));
+    if (count > 0) world.colliders.movingTree.Optimize(count);
+}
+
+// Asks for no memory after ReserveForChange.
+BodyId Add(WorldState& world, const BodySettings& settings, NewBody&& own) {
     const uint32_t body = world.bodies.Allocate();
     BodyCold& cold = world.bodies.cold[body];
-    SetShapeOf(world, body, settings.shape);
+    SetShapeOf(world, body, std::move(own.shape));
     cold.material = settings.material;
     cold.userData = settings.userData;
     cold.continuous = settings.continuous;
@@ -103,9 +131,10 @@ BodyId Add(WorldState& world, const BodySettings& settings) {
     cold.isSensor = settings.isSensor;
     world.bodies.SetPenetrationTarget(body, settings.penetrationTarget);
     if (settings.reportsContacts) world.bodies.reportsContacts.Insert(body);
-    FillDynamics(world.bodies.dynamics[body], cold, settings);
+    world.bodies.dynamics[body] = own.dynamics;
+    cold.keptMass = std::move(own.keptMass);
     world.bodies.SetRadii(body, *settings.shape);
-    world.bodies.SetFilter(body, {settings.category, settings.mask, settings.group});
+    world.bodies.SetFilter(body, std::move(own.filter));
     if (cold.children) {
         const float kilograms = settings.mass > 0 ? settings.mass : settings.density * settings.shape->Mass().volume;
         cold.children->massUnit = double{kilograms} / RelativeMassOf(*settings.shape);
@@ -128,10 +157,6 @@ BodyId Add(WorldState& world, const BodySettings& settings) {
     return world.bodies.IdOf(body);
 }
 
-uint32_t ColliderCountOf(const Shape& shape) {
-    return shape.IsCompound() ? static_cast<uint32_t>(static_cast<const CompoundShape&>(shape).Children().size()) : 1;
-}
-
 // Calls visit(record) for the contacts of a pair in the last step.
 template <class Visit>
 void VisitRecords(PairStore& pairs, uint32_t pair, Visit&& visit) {
@@ -145,35 +170,59 @@ float ImpulseOf(PairStore& pairs, uint32_t pair) {
     return sum;
 }
 
-// What carried `load` N s of the body `from`, which goes, and little else, forgets it, and so does what is below it:
-// the impulses with which the next step begins would throw it up. from: kNone for `body` itself, whose contacts are
-// only read.
-constexpr int kDeepest = 64;
-void Unload(WorldState& world, uint32_t body, uint32_t from, float load, int depth = 0) {
-    Array<std::pair<uint32_t, float>> contacts;
-    float sum = 0;
-    VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body, 1}, [&](uint32_t pair) {
-        const Pair& of = world.pairs.pairs[pair];
-        if (of.bodyA == from || of.bodyB == from) return;
-        contacts.emplace_back(pair, ImpulseOf(world.pairs, pair));
-        sum += contacts.back().second;
-    });
-    constexpr float kMost = 0.75f;  // of what it carries: less is left to the solver
-    if (!(sum > 0 && load > kMost * sum)) return;
-    const float part = from == BodyStore::kNone ? 1 : std::max(1 - load / sum, 0.0f);
-    for (const auto& [pair, impulse] : contacts) {
-        if (!(impulse > 0)) continue;
-        VisitRecords(world.pairs, pair, [&](ContactRecord& record) {
-            for (float& i : record.impulse) i *= part;
-            for (float& i : record.frictionImpulse) i *= part;
-            record.twistImpulse *= part;
-        });
-        const Pair& of = world.pairs.pairs[pair];
-        const uint32_t other = of.bodyA == body ? of.bodyB : of.bodyA;
-        if (depth < kDeepest && world.bodies.dynamics[other].inverseMass > 0)
-            Unload(world, other, body, from == BodyStore::kNone ? impulse : (1 - part) * impulse, depth + 1);
+// What carried `load` N s of a body that goes, and little else, forgets it, and so does what is below it: the impulses
+// with which the next step begins would throw it up.
+class Unloading {
+public:
+    explicit Unloading(WorldState& world) : world_(world) {}
+    // What was changed is as before, unless it is kept.
+    ~Unloading() {
+        for (auto changed = before_.rbegin(); changed != before_.rend(); ++changed)
+            world_.pairs.records[changed->record] = changed->was;
     }
-}
+    void Keep() { before_.clear(); }
+
+    // The contacts of `body`, of which `from` goes, or is unloaded; from: kNone for the body that goes, whose contacts
+    // are only read.
+    void Run(uint32_t body, uint32_t from, float load, int depth = 0) {
+        Array<std::pair<uint32_t, float>> contacts;
+        float sum = 0;
+        for (const uint32_t pair : PairsOf(world_, body)) {
+            const Pair& of = world_.pairs.pairs[pair];
+            if (of.bodyA == from || of.bodyB == from) continue;
+            contacts.emplace_back(pair, ImpulseOf(world_.pairs, pair));
+            sum += contacts.back().second;
+        }
+        constexpr float kMost = 0.75f;  // of what it carries: less is left to the solver
+        if (!(sum > 0 && load > kMost * sum)) return;
+        const float part = from == BodyStore::kNone ? 1 : std::max(1 - load / sum, 0.0f);
+        for (const auto& [pair, impulse] : contacts) {
+            if (!(impulse > 0)) continue;
+            VisitRecords(world_.pairs, pair, [&](ContactRecord& record) { Scale(record, part); });
+            const Pair& of = world_.pairs.pairs[pair];
+            const uint32_t other = of.bodyA == body ? of.bodyB : of.bodyA;
+            if (depth < kDeepest && world_.bodies.dynamics[other].inverseMass > 0)
+                Run(other, body, from == BodyStore::kNone ? impulse : (1 - part) * impulse, depth + 1);
+        }
+    }
+
+private:
+    static constexpr int kDeepest = 64;
+    struct Changed {
+        uint32_t record;
+        ContactRecord was;
+    };
+    void Scale(ContactRecord& record, float part) {
+        if (part == 1) return;
+        before_.push_back({static_cast<uint32_t>(&record - world_.pairs.records.data()), record});
+        for (float& i : record.impulse) i *= part;
+        for (float& i : record.frictionImpulse) i *= part;
+        record.twistImpulse *= part;
+    }
+
+    WorldState& world_;
+    Array<Changed> before_;
+};
 
 }  // namespace
 
@@ -181,7 +230,13 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     const WorldChange<&BodyInterface::Create> change(world_, settings);
     if (change.Refusal()) return *change.Refusal();
     if (MaybeError error = Check(settings)) return *error;
-    return change.Created<BodyId>(Add(world_, settings));
+    NewBody own(settings);
+    Additions more;
+    Include(more, world_.colliders, settings);
+    OptimizeFor(world_, {&settings, 1});
+    ReserveForChange(world_, more);
+    change.Begin();
+    return change.Created<BodyId>(Add(world_, settings, std::move(own)));
 }
 
 Result<BatchIds> BodyInterface::Commit(const BodyBatch& batch) {
@@ -198,16 +253,23 @@ Result<BatchIds> BodyInterface::Commit(const BodyBatch& batch) {
         if (!type) return InList("joints", types.size(), type.GetError());
         types.push_back(std::move(type.Value()));
     }
-    size_t colliders = 0;
-    for (const BodySettings& settings : batch.Bodies()) colliders += ColliderCountOf(*settings.shape);
-    world_.bodies.Reserve(batch.Bodies().size());
-    world_.colliders.Reserve(colliders);
-    world_.joints.Reserve(batch.Joints().size());
+    Additions more;
+    Array<NewBody> own;
+    own.reserve(batch.Bodies().size());
+    const ColliderStore nothingFree;
+    for (const BodySettings& settings : batch.Bodies()) {
+        own.emplace_back(settings);
+        Include(more, nothingFree, settings);
+    }
+    for (const BodyBatch::Joint& joint : batch.Joints()) IncludeJoint(world_, CommonOf(joint), more);
+    OptimizeFor(world_, batch.Bodies());
+    ReserveForChange(world_, more);
     BatchIds ids;
     ids.bodies.reserve(batch.Bodies().size());
     ids.joints.reserve(batch.Joints().size());
-    for (const BodySettings& settings : batch.Bodies()) ids.bodies.push_back(Add(world_, settings));
+    change.Begin();
     JointInterface joints(world_);
+    for (size_t i = 0; i < own.size(); ++i) ids.bodies.push_back(Add(world_, batch.Bodies()[i], std::move(own[i])));
     for (size_t i = 0; i < types.size(); ++i) {
         JointSettings settings = CommonOf(batch.Joints()[i]);
         for (BodyId* const body : {&settings.bodyA, &settings.bodyB})
@@ -222,10 +284,14 @@ Status BodyInterface::Remove(BodyId id) {
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
     const uint32_t body = id.index;
+    ReserveForChange(world_);
+    Unloading unloading(world_);
+    if (world_.bodies.dynamics[body].inverseMass > 0)
+        unloading.Run(body, BodyStore::kNone, std::numeric_limits<float>::infinity());
+    unloading.Keep();
+    change.Begin();
     WakeBody(world_, body);
     WakeNeighbors(world_, body);
-    if (world_.bodies.dynamics[body].inverseMass > 0)
-        Unload(world_, body, BodyStore::kNone, std::numeric_limits<float>::infinity());
     world_.joints.VisitOf(body, [&](uint32_t joint) { RemoveJoint(world_, joint); });
     BodyCold& cold = world_.bodies.cold[body];
     world_.bodies.continuousCount -= cold.continuous != ContinuousCollision::Off;
@@ -265,7 +331,7 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
     const Pose goal = CenterPose(*world_.bodies.cold[id.index].shape, position, Normalized(rotation));
     const Vector3 linear = Vector3((goal.position - now.position).cast<float>()) * (1.0f / dt);
     const Vector3 angular = RotationVectorOf(goal.rotation * now.rotation.Conjugate()) * (1.0f / dt);
-    if (MaybeError e = ChangeVelocity(world_, id, linear, angular)) return *e;
+    if (MaybeError e = ChangeVelocity(world_, change, id, linear, angular)) return *e;
     world_.bodies.cold[id.index].singleMove = SingleMove::Next;
     world_.bodies.singleMoves.Insert(id.index);
     return Done{};
@@ -274,7 +340,7 @@ Status BodyInterface::MoveKinematic(BodyId id, const Position& position, const Q
 Status BodyInterface::SetVelocity(BodyId id, const Vector3& linear, const Vector3& angular) {
     const WorldChange<&BodyInterface::SetVelocity> change(world_, id, linear, angular);
     if (change.Refusal()) return *change.Refusal();
-    if (MaybeError e = ChangeVelocity(world_, id, linear, angular)) return *e;
+    if (MaybeError e = ChangeVelocity(world_, change, id, linear, angular)) return *e;
     return Done{};
 }
 
@@ -298,11 +364,14 @@ Vector3 ArmTo(const WorldState& world, BodyId id, const Position& point) {
     return (point - world.bodies.CenterOf(id.index)).cast<float>();
 }
 
-Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& torque) {
+Status Push(WorldState& world, const WorldLock::Exclusive& alone, BodyId id, const Vector3& force,
+            const Vector3& torque) {
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("force", force), CheckFinite("torque", torque)))
         return *e;
     if (force.isZero(0) && torque.isZero(0)) return Done{};
     BodyCold& cold = world.bodies.cold[id.index];
+    ReserveToWake(world, id.index);
+    alone.Begin();
     // Under a steady push it may stay asleep: the step checks whether this one is the same.
     if (!world.bodies.dynamics[id.index].awake && !cold.isSteady) WakeBody(world, id.index);
     cold.force += force;
@@ -312,11 +381,14 @@ Status Push(WorldState& world, BodyId id, const Vector3& force, const Vector3& t
     return Done{};
 }
 
-Status ApplyImpulse(WorldState& world, BodyId id, const Vector3& impulse, const Vector3& angularImpulse) {
+Status ApplyImpulse(WorldState& world, const WorldLock::Exclusive& alone, BodyId id, const Vector3& impulse,
+                    const Vector3& angularImpulse) {
     if (MaybeError e = FirstOf(CheckPushable(world, id), CheckFinite("impulse", impulse),
                                CheckFinite("angular impulse", angularImpulse)))
         return *e;
     if (impulse.isZero(0) && angularImpulse.isZero(0)) return Done{};
+    ReserveToWake(world, id.index);
+    alone.Begin();
     WakeBody(world, id.index);
     const BodyMass& m = world.bodies.masses[id.index];
     SetVelocityOf(
@@ -330,34 +402,34 @@ Status ApplyImpulse(WorldState& world, BodyId id, const Vector3& impulse, const 
 Status BodyInterface::AddForce(BodyId id, const Vector3& force) {
     const WorldChange<&BodyInterface::AddForce> change(world_, id, force);
     if (change.Refusal()) return *change.Refusal();
-    return Push(world_, id, force, Vector3::Zero());
+    return Push(world_, change, id, force, Vector3::Zero());
 }
 Status BodyInterface::AddTorque(BodyId id, const Vector3& torque) {
     const WorldChange<&BodyInterface::AddTorque> change(world_, id, torque);
     if (change.Refusal()) return *change.Refusal();
-    return Push(world_, id, Vector3::Zero(), torque);
+    return Push(world_, change, id, Vector3::Zero(), torque);
 }
 Status BodyInterface::AddForceAt(BodyId id, const Vector3& force, const Position& point) {
     const WorldChange<&BodyInterface::AddForceAt> change(world_, id, force, point);
     if (change.Refusal()) return *change.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
-    return Push(world_, id, force, Cross<float>(ArmTo(world_, id, point), force));
+    return Push(world_, change, id, force, Cross<float>(ArmTo(world_, id, point), force));
 }
 Status BodyInterface::AddImpulse(BodyId id, const Vector3& impulse) {
     const WorldChange<&BodyInterface::AddImpulse> change(world_, id, impulse);
     if (change.Refusal()) return *change.Refusal();
-    return ApplyImpulse(world_, id, impulse, Vector3::Zero());
+    return ApplyImpulse(world_, change, id, impulse, Vector3::Zero());
 }
 Status BodyInterface::AddAngularImpulse(BodyId id, const Vector3& impulse) {
     const WorldChange<&BodyInterface::AddAngularImpulse> change(world_, id, impulse);
     if (change.Refusal()) return *change.Refusal();
-    return ApplyImpulse(world_, id, Vector3::Zero(), impulse);
+    return ApplyImpulse(world_, change, id, Vector3::Zero(), impulse);
 }
 Status BodyInterface::AddImpulseAt(BodyId id, const Vector3& impulse, const Position& point) {
     const WorldChange<&BodyInterface::AddImpulseAt> change(world_, id, impulse, point);
     if (change.Refusal()) return *change.Refusal();
     if (MaybeError e = FirstOf(CheckPushable(world_, id), CheckPosition("point", point))) return *e;
-    return ApplyImpulse(world_, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
+    return ApplyImpulse(world_, change, id, impulse, Cross<float>(ArmTo(world_, id, point), impulse));
 }
 
 Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
@@ -369,10 +441,15 @@ Status BodyInterface::SetSensor(BodyId id, bool isSensor) {
     if (cold.continuous != ContinuousCollision::Off)
         return Error{ErrorCode::Unsupported,
                      "the body has continuous collision; a sensor touches nothing, and is not cast"};
+    const Array<uint32_t> pairs = PairsOf(world_, id.index);
+    Additions more{.sensors = isSensor, .removedPairs = CountPairsOf(world_, id.index)};
+    VisitColliders(world_, id.index,
+                   [&](uint32_t i) { ++more.InTree(world_.colliders.colliders[i].moving, isSensor); });
+    ReserveForChange(world_, more);
+    change.Begin();
     WakeBody(world_, id.index);
     WakeNeighbors(world_, id.index);
-    VisitPairsOf(world_.bodies, world_.colliders, world_.pairs, {&id.index, 1},
-                 [&](uint32_t pair) { RemovePair(world_.pairs, world_.coloring, pair); });
+    for (const uint32_t pair : pairs) RemovePair(world_.pairs, world_.coloring, pair);
     cold.isSensor = isSensor;
     MoveToItsTree(world_, id.index);
     WakeNeighbors(world_, id.index);
@@ -386,6 +463,8 @@ Status BodyInterface::SetSensorSees(BodyId id, SensorSees sees) {
     if (change.Refusal()) return *change.Refusal();
     if (MaybeError e = CheckIsSensor(world_, id)) return *e;
     if (MaybeError e = CheckSensor(sees)) return *e;
+    ReserveForChange(world_);
+    change.Begin();
     world_.sensors.Add(id, sees, world_.sensors.sensors[world_.sensors.PlaceOf(id)].reportsStay);
     return Done{};
 }
@@ -402,6 +481,8 @@ Status BodyInterface::Wake(BodyId id) {
     const WorldChange<&BodyInterface::Wake> change(world_, id);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
+    ReserveToWake(world_, id.index);
+    change.Begin();
     WakeBody(world_, id.index);
     return Done{};
 }
@@ -413,7 +494,9 @@ Status BodyInterface::Sleep(BodyId id) {
     if (world_.bodies.dynamics[id.index].motion != MotionType::Dynamic)
         return Error{ErrorCode::Unsupported, "only dynamic bodies sleep"};
     if (!world_.bodies.dynamics[id.index].awake) return Done{};
-    SleepIslandOf(world_, id.index);
+    const Array<uint32_t> island = IslandToSleep(world_, id.index);
+    change.Begin();
+    SleepAsIsland(world_, island);
     for (const uint32_t body : world_.sleeping.Bodies(world_.bodies.cold[id.index].sleepingIsland))
         ForgetPush(world_.bodies, body);
     return Done{};

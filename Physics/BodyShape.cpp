@@ -4,6 +4,7 @@
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyReading.h>
+#include <Fulcrum/Physics/World/Reservations.h>
 #include <Fulcrum/Physics/World/Waking.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
 
@@ -19,7 +20,20 @@ void ChangeMass(WorldState& world, uint32_t body, const MassProperties& shape, f
     if (world.joints.HasAny(body)) world.coloring.Invalidate();
 }
 
-ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& edit, bool updatesMass) {
+void ReserveEdit(WorldState& world, uint32_t body, const MutableCompound::Edit& edit) {
+    const BodyCold& cold = world.bodies.cold[body];
+    Additions more{.removedPairs = CountPairsOf(world, body)};
+    more.InTree(world.bodies.dynamics[body].motion != MotionType::Static, cold.isSensor) += 1;
+    const uint32_t before = ColliderRoomOf(world, body);
+    if (edit.index >= before) more.colliders = world.colliders.ReserveRun(before);
+    ReserveForChange(world, more);
+    cold.children->compound->Reserve(edit);
+}
+
+ChildId Commit(WorldState& world, const WorldLock::Exclusive& alone, uint32_t body, const MutableCompound::Edit& edit,
+               bool updatesMass) {
+    ReserveEdit(world, body, edit);
+    alone.Begin();
     BodyCold& cold = world.bodies.cold[body];
     const Vector3 center = cold.shape->Mass().centerOfMass;
     BodyChildren& children = *cold.children;
@@ -40,7 +54,8 @@ ChildId Commit(WorldState& world, uint32_t body, const MutableCompound::Edit& ed
 
 // plan(compound, mass) returns the edit.
 template <class Plan>
-Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, const Plan& plan) {
+Result<ChildId> EditChildren(WorldState& world, const WorldLock::Exclusive& alone, BodyId id, MassUpdate mass,
+                             const Plan& plan) {
     if (!world.bodies.Find(id)) return Unknown(id);
     if (MaybeError e = CheckEnum("mass", mass, MassUpdate::Keep)) return *e;
     const BodyCold& cold = world.bodies.cold[id.index];
@@ -59,7 +74,7 @@ Result<ChildId> EditChildren(WorldState& world, BodyId id, MassUpdate mass, cons
                                          Vector3(shape.principalInertia * (kilograms / shape.volume))))
             return *e;
     }
-    return Commit(world, id.index, edit.Value(), updates);
+    return Commit(world, alone, id.index, edit.Value(), updates);
 }
 
 Status WithoutId(const Result<ChildId>& result) {
@@ -72,23 +87,24 @@ Status WithoutId(const Result<ChildId>& result) {
 Result<ChildId> BodyInterface::AddChild(BodyId id, const CompoundShape::ChildSettings& child, MassUpdate mass) {
     const WorldChange<&BodyInterface::AddChild> change(world_, id, child, mass);
     if (change.Refusal()) return *change.Refusal();
-    return change.Created(
-        EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanAdd(child, m); }));
+    return change.Created(EditChildren(world_, change, id, mass,
+                                       [&](const MutableCompound& c, MassUpdate m) { return c.PlanAdd(child, m); }));
 }
 
 Status BodyInterface::SetChild(BodyId id, ChildId child, const CompoundShape::ChildSettings& settings,
                                MassUpdate mass) {
     const WorldChange<&BodyInterface::SetChild> change(world_, id, child, settings, mass);
     if (change.Refusal()) return *change.Refusal();
-    return WithoutId(EditChildren(
-        world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanSet(child, settings, m); }));
+    return WithoutId(EditChildren(world_, change, id, mass, [&](const MutableCompound& c, MassUpdate m) {
+        return c.PlanSet(child, settings, m);
+    }));
 }
 
 Status BodyInterface::MoveChild(BodyId id, ChildId child, const Vector3& position, const Quaternion& rotation,
                                 MassUpdate mass) {
     const WorldChange<&BodyInterface::MoveChild> change(world_, id, child, position, rotation, mass);
     if (change.Refusal()) return *change.Refusal();
-    return WithoutId(EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) {
+    return WithoutId(EditChildren(world_, change, id, mass, [&](const MutableCompound& c, MassUpdate m) {
         return c.PlanMove(child, position, rotation, m);
     }));
 }
@@ -96,8 +112,8 @@ Status BodyInterface::MoveChild(BodyId id, ChildId child, const Vector3& positio
 Status BodyInterface::RemoveChild(BodyId id, ChildId child, MassUpdate mass) {
     const WorldChange<&BodyInterface::RemoveChild> change(world_, id, child, mass);
     if (change.Refusal()) return *change.Refusal();
-    return WithoutId(
-        EditChildren(world_, id, mass, [&](const MutableCompound& c, MassUpdate m) { return c.PlanRemove(child, m); }));
+    return WithoutId(EditChildren(world_, change, id, mass,
+                                  [&](const MutableCompound& c, MassUpdate m) { return c.PlanRemove(child, m); }));
 }
 
 const MutableCompound* BodyInterface::GetChildren(BodyId id) const {
@@ -124,12 +140,20 @@ Status BodyInterface::SetShape(BodyId id, const ShapePtr& shape, MassUpdate mass
                 CheckInverses("shape", "shape", kilograms, Vector3(next.principalInertia * (kilograms / next.volume))))
             return *e;
     }
+    OwnShape own(shape);
+    const uint32_t count = ColliderCountOf(*shape);
+    const bool hasRoom = count == cold.colliderCount || world_.colliders.HasFree(count);
+    Additions more{.colliders = hasRoom ? 0 : count, .removedPairs = CountPairsOf(world_, body)};
+    more.InTree(d.motion != MotionType::Static, cold.isSensor) += count;
+    ReserveForChange(world_, more);
+    world_.colliders.ReserveFree(cold.colliderCount, cold.MoreColliders());
+    change.Begin();
     WakeBody(world_, body);
     WakeNeighbors(world_, body);
     WakeJoined(world_, body);
     DropColliders(world_, body);
     const ShapePtr before = cold.shape;
-    SetShapeOf(world_, body, shape);
+    SetShapeOf(world_, body, std::move(own));
     MoveCenterOfMass(world_, body, before->Mass().centerOfMass, next.centerOfMass);
     world_.bodies.SetRadii(body, *shape);
     if (updates) ChangeMass(world_, body, next, kilograms);

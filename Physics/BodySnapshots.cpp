@@ -5,6 +5,7 @@
 #include <Fulcrum/Physics/Snapshots/SnapshotElements.h>
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
 #include <Fulcrum/Physics/Validation.h>
+#include <Fulcrum/Physics/World/Reservations.h>
 #include <Fulcrum/Physics/World/Teleports.h>
 #include <Fulcrum/Physics/World/Velocities.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
@@ -176,13 +177,24 @@ Status PhysicsSystem::RestoreBodies(std::span<const std::byte> bytes) {
     if (MaybeError error = CheckBodies(world_->bodies, saved)) return *error;
     if (MaybeError error = CheckJoints(world_->joints, joints, snapshots_->settings)) return *error;
 
+    ReserveForChange(*world_, {.placed = saved.size()});
+    Array<BodyPlace> places;
+    Array<PosesBefore> before;
+    places.reserve(saved.size());
+    before.reserve(saved.size());
     for (const SavedBody& body : saved) {
         const Vector3 offset = world_->bodies.cold[body.id.index].shape->Mass().centerOfMass;
         const Position place =
             body.center.position + body.remainder.value - Rotate(body.center.rotation, offset).cast<double>();
-        const BodyPlace there{body.id.index, {place, body.center.rotation}};
-        Teleport(*world_, {&there, 1});
-        (void)ChangeVelocity(*world_, body.id, body.linear, body.angular);  // static bodies have none
+        places.push_back({body.id.index, {place, body.center.rotation}});
+        before.emplace_back(world_->bodies, std::span(&places.back(), 1));
+    }
+    change.Begin();
+    for (size_t i = 0; i < saved.size(); ++i) {
+        Teleport(*world_, {&places[i], 1}, before[i]);
+        const bool isGiven = IsFinite(saved[i].linear) && IsFinite(saved[i].angular);
+        if (world_->bodies.dynamics[places[i].body].motion != MotionType::Static && isGiven)
+            GiveVelocity(*world_, places[i].body, saved[i].linear, saved[i].angular);
     }
     for (const SavedBody& body : saved) Complete(world_->bodies, body);
     for (const SavedJoint& joint : joints) {

@@ -52,6 +52,9 @@ public:
     virtual void BeginCall(const void* function, std::span<const void* const> arguments) = 0;
     // What a call has created: the address of the value of its Result, a BodyId for BodyInterface::Create.
     virtual void NoteCreated(const void* value) = 0;
+    // The call was cut short by an exception, as when memory ran out: it has had no effect, or the world is broken now,
+    // as after a step (Docs/Embedding.md). Must not throw.
+    virtual void CancelCall() {}
     // After a step. stateHash: PhysicsSystem::HashState, which cannot be called now.
     virtual void EndStep(uint64_t stateHash) = 0;
 };

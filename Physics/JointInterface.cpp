@@ -1,10 +1,10 @@
 #include <Fulcrum/Physics/JointInterface.h>
 
-#include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
+#include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
 #include <Fulcrum/Physics/World/TargetChanges.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
@@ -99,8 +99,7 @@ void AddWorldBody(WorldState& world) {
     BodyStore& bodies = world.bodies;
     const uint32_t body = bodies.worldBody = bodies.Allocate();
     bodies.cold[body].isWorld = true;
-    static const ShapePtr kEmpty = EmptyShape::Create();
-    SetShapeOf(world, body, kEmpty);
+    SetShapeOf(world, body, OwnShape(ShapeOfWorldBody()));
     bodies.SetRadii(body, *bodies.cold[body].shape);
     bodies.SetCenterPose(body, {world.colliders.boundsOrigin, {}});
     bodies.UpdateInertia(body);
@@ -162,6 +161,10 @@ Result<JointId> JointInterface::Create(const Settings& settings) {
     if (MaybeError error = Check(settings)) return *error;
     Result<std::unique_ptr<JointType>> type = MakeCheckedType(settings, motionOf);
     if (!type) return type.GetError();
+    Additions more;
+    IncludeJoint(world_, settings, more);
+    ReserveForChange(world_, more);
+    change.Begin();
     return change.template Created<JointId>(Add(settings, std::move(type.Value())));
 }
 
@@ -198,6 +201,8 @@ Status JointInterface::SetTarget(JointId id, const Position& target) {
     float(&anchor)[3] = world_.joints.records[id.index].anchorA;
     const Vector3 point = world_.bodies.CenterPoseOf(joint.body[0]).InverseTransform(OnGrid(target));
     const bool isSame = point == Vector3(anchor[0], anchor[1], anchor[2]);
+    ReserveToWake(world_, joint);
+    change.Begin();
     for (int k = 0; k < 3; ++k) anchor[k] = point[k];
     if (joint.enabled && !isSame) WakeBodiesOf(world_, joint);
     return Done{};
@@ -207,17 +212,23 @@ Status JointInterface::Remove(JointId id) {
     const WorldChange<&JointInterface::Remove> change(world_, id);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
+    ReserveForChange(world_);
+    change.Begin();
     RemoveJoint(world_, id.index);
     return Done{};
 }
 
-bool JointInterface::Exists(JointId id) const { return world_.joints.Find(id); }
+bool JointInterface::Exists(JointId id) const { return IsReadable(world_) && world_.joints.Find(id); }
 
 Status JointInterface::SetEnabled(JointId id, bool enabled) {
     const WorldChange<&JointInterface::SetEnabled> change(world_, id, enabled);
     if (change.Refusal()) return *change.Refusal();
     if (!Exists(id)) return Unknown(id);
-    if (world_.joints.joints[id.index].enabled != enabled) EnableJoint(world_, id.index, enabled);
+    const Joint& joint = world_.joints.joints[id.index];
+    if (joint.enabled == enabled) return Done{};
+    ReserveForChange(world_, {.removedPairs = enabled ? PairsEndedBy(world_, joint) : 0});
+    change.Begin();
+    EnableJoint(world_, id.index, enabled);
     return Done{};
 }
 
@@ -239,7 +250,7 @@ void ForgetRows(JointType& type) {
 }  // namespace
 
 template <class Change>
-Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change) {
+Status JointInterface::ChangeControl(const WorldLock::Exclusive& alone, JointId id, JointAxis axis, Change&& change) {
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckEnum("axis", axis, JointAxis::AngularZ)) return *error;
     AxisControl* control = ControlOf(id, axis);
@@ -248,8 +259,10 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
     AxisControl changed = *control;
     change(changed);
     if (MaybeError error = CheckControl("axis", changed, world_.joints.types[id.index]->BoundsOf(axis))) return *error;
-    *control = changed;
     Joint& joint = world_.joints.joints[id.index];
+    ReserveToWake(world_, joint);
+    alone.Begin();
+    *control = changed;
     if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.coloring.Invalidate();
     if (joint.type->MaxRows() == 0) ForgetRows(*joint.type);
     if (joint.enabled) WakeBodiesOf(world_, joint);
@@ -259,7 +272,7 @@ Status JointInterface::ChangeControl(JointId id, JointAxis axis, Change&& change
 Status JointInterface::SetLimits(JointId id, JointAxis axis, const std::optional<JointLimits>& limits) {
     const WorldChange<&JointInterface::SetLimits> change(world_, id, axis, limits);
     if (change.Refusal()) return *change.Refusal();
-    return ChangeControl(id, axis, [&](AxisControl& control) {
+    return ChangeControl(change, id, axis, [&](AxisControl& control) {
         control.limited = limits.has_value();
         if (limits) control.limits = *limits;
     });
@@ -267,12 +280,12 @@ Status JointInterface::SetLimits(JointId id, JointAxis axis, const std::optional
 Status JointInterface::SetMotor(JointId id, JointAxis axis, const JointMotor& motor) {
     const WorldChange<&JointInterface::SetMotor> change(world_, id, axis, motor);
     if (change.Refusal()) return *change.Refusal();
-    return ChangeControl(id, axis, [&](AxisControl& control) { control.motor = motor; });
+    return ChangeControl(change, id, axis, [&](AxisControl& control) { control.motor = motor; });
 }
 Status JointInterface::SetFriction(JointId id, JointAxis axis, float friction) {
     const WorldChange<&JointInterface::SetFriction> change(world_, id, axis, friction);
     if (change.Refusal()) return *change.Refusal();
-    return ChangeControl(id, axis, [&](AxisControl& control) { control.friction = friction; });
+    return ChangeControl(change, id, axis, [&](AxisControl& control) { control.friction = friction; });
 }
 
 Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target) {
@@ -281,6 +294,8 @@ Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckRotation("target", target)) return *error;
     const Joint& joint = world_.joints.joints[id.index];
+    ReserveToWake(world_, joint);
+    change.Begin();
     joint.type->SetTargetOrientation(Normalized(target));
     if (joint.enabled) WakeBodiesOf(world_, joint);
     return Done{};
@@ -304,6 +319,8 @@ Status JointInterface::SetEffort(JointId id, const SolverSettings& effort) {
                                    CheckRange("positionIterations", effort.positionIterations, 0, 255)))
         return *error;
     Joint& joint = world_.joints.joints[id.index];
+    ReserveToWake(world_, joint);
+    change.Begin();
     joint.effort = ToLeastEffort(effort);
     world_.coloring.Invalidate();
     if (joint.enabled) WakeBodiesOf(world_, joint);
@@ -316,6 +333,8 @@ Status JointInterface::SetMassOverride(JointId id, const MassOverride& massOverr
     if (!Exists(id)) return Unknown(id);
     if (MaybeError error = CheckMassOverride("massOverride", massOverride)) return *error;
     Joint& joint = world_.joints.joints[id.index];
+    ReserveToWake(world_, joint);
+    change.Begin();
     if (!(joint.massOverride == massOverride)) world_.coloring.Invalidate();
     joint.SetMassOverride(massOverride);
     if (joint.enabled) WakeBodiesOf(world_, joint);
@@ -378,7 +397,7 @@ JointError JointInterface::GetError(JointId id) const {
 namespace {
 
 Vector3 Read(const WorldState& world, JointId id, float (JointRecord::*force)[3]) {
-    if (!world.joints.Find(id)) return Vector3::Zero();
+    if (!IsReadable(world) || !world.joints.Find(id)) return Vector3::Zero();
     const float(&v)[3] = world.joints.records[id.index].*force;
     return Vector3(v[0], v[1], v[2]);
 }
@@ -430,11 +449,13 @@ const JointType* JointInterface::GetType(JointId id) const {
 }
 
 void JointInterface::Visit(FunctionRef<void(JointId)> visit) const {
+    if (!IsReadable(world_)) return;
     for (uint32_t i = 0; i < world_.joints.joints.size(); ++i)
         if (world_.joints.joints[i].exists) visit(world_.joints.IdOf(i));
 }
 
 void JointInterface::VisitOf(BodyId body, FunctionRef<void(JointId)> visit) const {
+    if (!IsReadable(world_)) return;
     const uint32_t index = body == kWorldBody ? world_.bodies.worldBody : body.index;
     if (body == kWorldBody || world_.bodies.Find(body))
         world_.joints.VisitOf(index, [&](uint32_t joint) { visit(world_.joints.IdOf(joint)); });

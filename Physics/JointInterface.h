@@ -7,6 +7,7 @@
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Math/Result.h>
 #include <Fulcrum/Physics/Joints/JointKinds.h>
+#include <Fulcrum/Physics/World/WorldLock.h>
 
 #include <memory>
 
@@ -101,7 +102,7 @@ private:
     JointId Add(const JointSettings& settings, std::unique_ptr<JointType> type);
     AxisControl* ControlOf(JointId id, JointAxis axis) const;
     template <class Change>
-    Status ChangeControl(JointId id, JointAxis axis, Change&& change);
+    Status ChangeControl(const WorldLock::Exclusive& alone, JointId id, JointAxis axis, Change&& change);
 
     WorldState& world_;
 };

@@ -7,7 +7,10 @@
 #include <Fulcrum/Physics/Stages/Step.h>
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyPairs.h>
+#include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/Filters.h>
+#include <Fulcrum/Physics/World/Reservations.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 #include <Fulcrum/Physics/World/ShapeEdits.h>
 #include <Fulcrum/Physics/World/TargetChanges.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
@@ -46,6 +49,7 @@ Status PhysicsSystem::Update(double dt) {
     WorldState& world = *world_;
     const WorldChange<&PhysicsSystem::Update> change(world, dt);
     if (change.Refusal()) return *change.Refusal();
+    change.Begin();
     RunStep(world, *step_, dt);
     if (world.callObserver) world.callObserver->EndStep(HashOfState(world, *step_, *snapshots_));
     return Done{};
@@ -63,24 +67,39 @@ const StepEvents& PhysicsSystem::Events() const {
     static const StepEvents kNone;
     const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_->lock, WorldLock::Access::Queries);
     if (refusal) ReportMisuse(*refusal);
-    return refusal ? kNone : step_->events.events;
+    return refusal || !IsReadable(*world_) ? kNone : step_->events.events;
 }
 
-std::span<const SensorEvent> PhysicsSystem::SensorEvents() const { return world_->sensors.events; }
+std::span<const SensorEvent> PhysicsSystem::SensorEvents() const {
+    if (!IsReadable(*world_)) return {};
+    return world_->sensors.events;
+}
 
 std::span<const BodyId> PhysicsSystem::BodiesInside(BodyId sensor) const {
     const SensorStore& store = world_->sensors;
-    if (!store.Has(sensor)) return {};
+    if (!IsReadable(*world_) || !store.Has(sensor)) return {};
     return store.sensors[store.PlaceOf(sensor)].inside;
 }
 
-const StepReport& PhysicsSystem::Report() const { return step_->report; }
-const SystemSettings& PhysicsSystem::Settings() const { return world_->settings; }
+const StepReport& PhysicsSystem::Report() const {
+    (void)IsReadable(*world_);  // as far as the step has come
+    return step_->report;
+}
+const SystemSettings& PhysicsSystem::Settings() const {
+    (void)IsReadable(*world_);
+    return world_->settings;
+}
 
 Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     if (MaybeError error = Check(settings)) return *error;
     const WorldChange<&PhysicsSystem::SetSettings> change(*world_, settings);
     if (change.Refusal()) return *change.Refusal();
+    const bool refilters = settings.layerCollides != world_->settings.layerCollides;
+    ReserveForChange(*world_, {.removedPairs = refilters ? world_->pairs.pairs.size() : 0});
+    ReserveMore(world_->sensors.changed, world_->sensors.sensors.size());
+    if (settings.events.contacts) world_->pairs.ReserveReported();
+    if (settings.events.bodies) ReserveRoom(step_->events.bodies, world_->bodies.Size());
+    change.Begin();
     const std::array<uint32_t, 32> before = world_->settings.layerCollides;
     const bool changesGravity = settings.gravity != world_->settings.gravity,
                endsSleep = world_->settings.sleep.enabled && !settings.sleep.enabled;
@@ -92,7 +111,7 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
     world_->settings = settings;
     // The efforts of islands and the choice of trees depend on the settings.
     world_->coloring.Invalidate();
-    if (settings.layerCollides != before) RefilterLayers(*world_, before);
+    if (refilters) RefilterLayers(*world_, before);
     if (changesGravity || endsSleep)
         WakeIf(*world_, [&](uint32_t body) {
             return endsSleep ||
@@ -108,23 +127,28 @@ Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
 void PhysicsSystem::SetContactListener(const ContactListener* listener) {
     const WorldChange<&PhysicsSystem::SetContactListener> change(*world_, listener);
     if (change.Refusal()) return ReportMisuse(*change.Refusal());
+    ReserveForChange(*world_, {.removedPairs = world_->pairs.pairs.size()});
+    if (listener) world_->pairs.ReserveListenersData();
+    change.Begin();
     ChangeListener(*world_, listener);
 }
 
 void PhysicsSystem::SetStepObserver(StepObserver* observer) {
     const WorldLock::Exclusive alone(world_->lock);
-    if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
+    if (alone.Refusal() && alone.Refusal()->code != ErrorCode::BrokenWorld) return ReportMisuse(*alone.Refusal());
     world_->observer = observer;
 }
 
 void PhysicsSystem::SetCallObserver(CallObserver* observer) {
     const WorldLock::Exclusive alone(world_->lock);
-    if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
+    if (alone.Refusal() && alone.Refusal()->code != ErrorCode::BrokenWorld) return ReportMisuse(*alone.Refusal());
     world_->callObserver = observer;
 }
 
 WorldLock::Exclusive PhysicsSystem::HoldForChanges() {
-    if (const std::optional<Error> refusal = WorldLock::RefusalOfChanging(world_->lock)) ReportMisuse(*refusal);
+    const std::optional<Error> refusal = WorldLock::RefusalOfChanging(world_->lock);
+    if (refusal) ReportMisuse(*refusal);
+    else (void)IsReadable(*world_);
     return WorldLock::Exclusive(world_->lock, WorldLock::Access::Edits);
 }
 
@@ -137,8 +161,8 @@ Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
 
 Status PhysicsSystem::RestoreSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources) {
     const WorldChange<&PhysicsSystem::RestoreSnapshot> change(*world_, bytes, sources);
-    if (change.Refusal()) return *change.Refusal();
-    return ReadSnapshot(bytes, sources, *snapshots_, *world_, *step_);
+    if (change.Refusal() && change.Refusal()->code != ErrorCode::BrokenWorld) return *change.Refusal();
+    return ReadSnapshot(bytes, sources, *snapshots_, *world_, *step_, change);
 }
 
 uint64_t PhysicsSystem::HashState() const {
@@ -149,6 +173,7 @@ uint64_t PhysicsSystem::HashState() const {
 }
 
 void PhysicsSystem::VisitBodies(FunctionRef<void(BodyId)> visit) const {
+    if (!IsReadable(*world_)) return;
     const BodyStore& bodies = world_->bodies;
     for (uint32_t i = 0; i < bodies.Size(); ++i)
         if (bodies.cold[i].exists && i != bodies.worldBody) visit(bodies.IdOf(i));
@@ -162,13 +187,14 @@ static void VisitContact(const WorldState& world, uint32_t index, FunctionRef<vo
 }
 
 void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) const {
+    if (!IsReadable(*world_)) return;
     const WorldState& world = *world_;
     world.pairs.active.Visit([&](uint32_t index) { VisitContact(world, index, visit); });
 }
 
 void PhysicsSystem::VisitContactsOf(BodyId body, FunctionRef<void(const ContactView&)> visit) const {
     const WorldState& world = *world_;
-    if (!world.bodies.Find(body)) return;
+    if (!IsReadable(world) || !world.bodies.Find(body)) return;
     VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body.index, 1}, [&](uint32_t first) {
         for (uint32_t index = first; index != PairStore::kNone; index = world.pairs.MoreOf(index))
             VisitContact(world, index, visit);
@@ -176,6 +202,7 @@ void PhysicsSystem::VisitContactsOf(BodyId body, FunctionRef<void(const ContactV
 }
 
 void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const {
+    if (!IsReadable(*world_)) return;
     const BodyStore& bodies = world_->bodies;
     const WorldLock::Scope scope(world_->lock, WorldLock::OfThisThread(world_->lock));  // for its memory
     Array<uint32_t> parents(bodies.Size());
@@ -204,11 +231,12 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
 }
 
 void PhysicsSystem::VisitEfforts(FunctionRef<void(const IslandEffortReport&)> visit) const {
-    if (step_->report.islandsWithMoreEffort > 0)
+    if (IsReadable(*world_) && step_->report.islandsWithMoreEffort > 0)
         fulcrum::VisitEfforts(world_->settings.solver, world_->bodies, step_->solver, visit);
 }
 
 double PhysicsSystem::GetEnergy() const {
+    if (!IsReadable(*world_)) return 0;
     double energy = 0;
     const BodyStore& bodies = world_->bodies;
     for (uint32_t i = 0; i < bodies.Size(); ++i) {
@@ -236,6 +264,7 @@ uint64_t PhysicsSystem::HashPoses() const {
 }
 
 size_t PhysicsSystem::MemoryUsed() const {
+    (void)IsReadable(*world_);
     return sizeof(WorldState) + HeapBytes(*world_) + sizeof(StepState) + HeapBytes(*step_) + sizeof(SnapshotRoom) +
            HeapBytes(*snapshots_);
 }

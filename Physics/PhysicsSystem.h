@@ -1,7 +1,9 @@
 // A world of rigid bodies. Create it, add bodies through Bodies(), call Update once per frame. Changes, steps and
 // Queries() may be called by any thread at any time: each is seen by the others before or after, never half. Changes
 // wait for a step to end, queries do not. What else reads the world (getters of Bodies() and Joints(), events, reports,
-// visits) does not lock it: call it while no other thread changes or steps the world, or under Queries().Hold().
+// visits) does not lock it: call it while no other thread changes or steps the world, or under Queries().Hold(). A call
+// that throws, as where memory runs out, has changed nothing; a step, or RestoreSnapshot, that does leaves a world that
+// refuses everything but RestoreSnapshot (Docs/Embedding.md).
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Physics/Queries/RaySearch.h>
+#include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/Filters.h>
 
 #include <algorithm>
@@ -93,7 +94,9 @@ Bounds TreeBounds(const WorldState& world, const Position& lower, const Position
 WorldLock::Shared QueryInterface::Hold(HoldFor purpose) const {
     const WorldLock::Access access =
         purpose == HoldFor::Queries ? WorldLock::Access::Queries : WorldLock::Access::Reads;
-    if (const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_.lock, access)) ReportMisuse(*refusal);
+    const std::optional<Error> refusal = WorldLock::RefusalOfReading(world_.lock, access);
+    if (refusal) ReportMisuse(*refusal);
+    else (void)IsReadable(world_);
     return WorldLock::Shared(world_.lock, access);
 }
 

@@ -44,12 +44,13 @@ uint32_t BoundsTree::AllocateNode() {
     if (index != kNoNode) {
         freeNode_ = nodes_[index].parent;
     } else {
-        index = nodeCount_++;
+        index = nodeCount_;
         if (index == nodes_.size()) {
             // Grows by an eighth instead of doubling: the nodes are most of the memory.
             if (nodes_.size() == nodes_.capacity()) nodes_.reserve(nodes_.size() + nodes_.size() / 8 + 16);
             nodes_.emplace_back();
         }
+        ++nodeCount_;
     }
     ResetNode(index);
     return index;
@@ -283,6 +284,16 @@ void BoundsTree::Reserve(size_t ids) {
     gathered_.reserve(ids);
     // Nodes of eight, the nodes above them, and those on the ways to nodes that are not full.
     nodes_.reserve(ids / kWidth + ids / (kWidth * (kWidth - 2)) + 2 * kMaxDepth);
+}
+
+void BoundsTree::ReserveInsertions(uint32_t count, size_t ids) {
+    if (count == 0) return;
+    if (ids > places_.capacity()) places_.reserve(std::max(ids, 2 * places_.capacity()));
+    // Of each height count / 8, count / 64, ... nodes, and one more that is begun; the root. 2^32 leaves add 11
+    // heights.
+    constexpr size_t kMoreHeights = 11;
+    const size_t nodes = nodeCount_ + count / (kWidth - 1) + pendingHeight_ + kMoreHeights + 1;
+    if (nodes > nodes_.capacity()) nodes_.reserve(std::max(nodes, nodes_.capacity() + nodes_.capacity() / 8 + 16));
 }
 
 Bounds BoundsTree::TotalBounds() const { return size_ == 0 ? Bounds{} : Unpack(Union(nodes_[kRoot])); }

@@ -68,6 +68,8 @@ public:
     void Clear();
     // Allocates all that a tree of ids below `ids` needs.
     void Reserve(size_t ids);
+    // Allocates what Insert needs for `count` more leaves of ids below `ids`.
+    void ReserveInsertions(uint32_t count, size_t ids);
 
     // Calls visit(uint32_t id) for every leaf whose bounds overlap `bounds` (touching counts; infinite bounds are
     // allowed). Allocates nothing. The visitor must not change the tree.

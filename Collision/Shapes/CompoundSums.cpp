@@ -58,7 +58,7 @@ CompoundSum CompoundSums::SumWith(size_t level, uint32_t index, const CompoundSu
 void CompoundSums::Set(uint32_t index, const CompoundSum& child) {
     CompoundSum sum = child;
     for (size_t level = 0;; ++level) {
-        if (level == levels_.size()) levels_.emplace_back();
+        if (level == levels_.size()) levels_.push_back(std::move(next_));
         std::vector<CompoundSum>& sums = levels_[level];
         const bool isNew = index == sums.size();
         if (isNew) sums.push_back(sum);
@@ -68,6 +68,15 @@ void CompoundSums::Set(uint32_t index, const CompoundSum& child) {
         if (sums.size() == 1) return;
         sum = SumWith(level, index, sum);
         index /= kWidth;
+    }
+}
+
+void CompoundSums::Reserve(size_t children) {
+    next_.reserve(kWidth);
+    levels_.reserve(levels_.size() + 1);
+    for (std::vector<CompoundSum>& level : levels_) {
+        level.reserve(children);
+        children = (children + kWidth - 1) / kWidth;
     }
 }
 

@@ -26,6 +26,7 @@ public:
     static CompoundSum Of(const CompoundShape::Child& child, const Bounds& bounds);
 
     void Set(uint32_t index, const CompoundSum& child);  // at most one index beyond the last
+    void Reserve(size_t children);                       // for so many in all
     CompoundSum Total() const { return levels_.empty() ? CompoundSum{} : levels_.back().front(); }
     // The total if `child` replaced the one at the index.
     CompoundSum TotalWith(uint32_t index, const CompoundSum& child) const;
@@ -37,6 +38,7 @@ private:
     CompoundSum SumWith(size_t level, uint32_t index, const CompoundSum& other) const;
 
     std::vector<std::vector<CompoundSum>> levels_;  // the children, their partial sums, ..., the total
+    std::vector<CompoundSum> next_;                 // empty: the room of the next level
 };
 
 }  // namespace fulcrum

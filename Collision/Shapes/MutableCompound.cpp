@@ -6,6 +6,7 @@
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 
 #include <algorithm>
+#include <bit>
 
 namespace fulcrum {
 namespace {
@@ -142,7 +143,17 @@ void MutableCompound::Refresh(const CompoundSum& total) {
     innerRadius_ = total.innerRadius;
 }
 
+void MutableCompound::Reserve(const Edit& edit) {
+    const size_t room = std::bit_ceil(std::max(children_.size(), size_t{edit.index} + 1));
+    generations_.reserve(room);
+    free_.reserve(room);
+    children_.reserve(room);
+    sums_.Reserve(room);
+    tree_.Reserve(room);
+}
+
 ChildId MutableCompound::Commit(const Edit& edit) {
+    Reserve(edit);
     const uint32_t index = edit.index;
     const bool isNew = index >= children_.size() || !children_[index].shape;
     if (index == children_.size()) {

@@ -59,6 +59,7 @@ public:
     Result<Edit> PlanMove(ChildId id, const Vector3& position, const Quaternion& rotation, MassUpdate mass) const;
     Result<Edit> PlanRemove(ChildId id, MassUpdate mass) const;
     ChildId Commit(const Edit& edit);
+    void Reserve(const Edit& edit);  // so that Commit of it asks for no memory; it begins with this
 
 private:
     friend struct ShapeFileAccess;

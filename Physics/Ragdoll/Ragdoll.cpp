@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
+#include <Fulcrum/Physics/BodyBatch.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/Misuse.h>
 
@@ -102,23 +103,25 @@ Result<Ragdoll> Ragdoll::Create(PhysicsSystem& system, const RagdollSettings& se
 MaybeError Ragdoll::Build(const RagdollSettings& settings, const Placed& placed) {
     const BodySettings& root = settings.parts[0].body;
     originInRoot_ = Inverse({root.position.cast<float>(), Normalized(root.rotation)});
+    std::vector<BodyBatch::Joint> joints;
     for (size_t i = 0; i < settings.parts.size(); ++i) {
-        // The settings are checked, so this fails only if changes are not allowed now: for the first part or never.
-        Result<BodyId> body = system_->Bodies().Create(placed.bodies[i]);
-        if (!body) return body.GetError();
-        bodies_.push_back(body.Value());
-        joints_.emplace_back();
         parents_.push_back(settings.parts[i].parent);
         frames_.push_back(placed.frames[i]);
         gravityFactors_.push_back(settings.parts[i].body.gravityFactor);
-    }
-    for (size_t i = 1; i < settings.parts.size(); ++i) {
         if (!placed.joints[i]) continue;
-        RagdollJoint joint = *placed.joints[i];
-        CommonOf(joint).bodyA = bodies_[static_cast<size_t>(parents_[i])];
-        CommonOf(joint).bodyB = bodies_[i];
-        joints_[i] = std::visit([&](const auto& ofKind) { return system_->Joints().Create(ofKind); }, joint).Value();
+        std::visit([&](const auto& ofKind) { joints.emplace_back(ofKind); }, *placed.joints[i]);
+        CommonOf(joints.back()).bodyA = BodyBatch::Body(static_cast<uint32_t>(parents_[i]));
+        CommonOf(joints.back()).bodyB = BodyBatch::Body(static_cast<uint32_t>(i));
     }
+    joints_.resize(settings.parts.size());
+    const Result<BodyBatch> batch = BodyBatch::Prepare(placed.bodies, std::move(joints));
+    if (!batch) return batch.GetError();
+    // The settings are checked, so this fails only if changes are not allowed now.
+    Result<BatchIds> made = system_->Bodies().Commit(batch.Value());
+    if (!made) return made.GetError();
+    bodies_ = std::move(made.Value().bodies);
+    for (size_t i = 0, next = 0; i < joints_.size(); ++i)
+        if (placed.joints[i]) joints_[i] = made.Value().joints[next++];
     return std::nullopt;
 }
 

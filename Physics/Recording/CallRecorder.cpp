@@ -79,33 +79,28 @@ public:
 
     // ---- CallObserver
 
+    // What a call does must not depend on whether it is recorded: where memory runs out the recording ends.
+
     void BeginCall(const void* function, std::span<const void* const> arguments) override {
-        if (error_) return;
-        const auto found = numbers_.find(function);
-        if (found == numbers_.end()) {
-            error_ = Error{ErrorCode::Unsupported, "a call that is not in Recording/PublicCalls.h"};
-            return;
-        }
-        const bool isStep = function == StepTag();
-        if (isStep && hasCalls_) AddBodies();
-        Add(EntryKind::Call, [&](CallWriter& writer) {
-            writer.Write(found->second);
-            CallRows()[found->second].write(writer, arguments);
-        });
-        last_ = found->second;
-        hasCalls_ = !isStep;
-        if (isStep) Flush();
+        OrEnd([&] { RecordCall(function, arguments); });
     }
     void NoteCreated(const void* value) override {
+        OrEnd([&] {
+            CreatedIds created;
+            CallRows()[last_].noteCreated(value, created);
+            Add(EntryKind::Created, [&](CallWriter& writer) { writer.Write(created); });
+        });
+    }
+    void CancelCall() override {
         if (error_) return;
-        CreatedIds created;
-        CallRows()[last_].noteCreated(value, created);
-        Add(EntryKind::Created, [&](CallWriter& writer) { writer.Write(created); });
+        if (last_ == numbers_.find(StepTag())->second) error_ = std::move(cutShort_);
+        else pending_.resize(lastEntry_);
     }
     void EndStep(uint64_t stateHash) override {
-        if (error_) return;
-        Add(EntryKind::Step, [&](CallWriter& writer) { writer.Write(stateHash); });
-        AddBodies();
+        OrEnd([&] {
+            Add(EntryKind::Step, [&](CallWriter& writer) { writer.Write(stateHash); });
+            AddBodies();
+        });
     }
 
     // ---- ObjectNumbers: what is new becomes an entry before that of the call, whose arguments are written aside.
@@ -151,12 +146,38 @@ public:
         if (isDetached_) return;
         isDetached_ = true;
         system_.SetCallObserver(nullptr);
-        if (error_) return;
-        Add(EntryKind::End, [](CallWriter&) {});
-        Flush();
+        OrEnd([&] {
+            Add(EntryKind::End, [](CallWriter&) {});
+            Flush();
+        });
     }
 
 private:
+    template <class Work>
+    void OrEnd(const Work& work) noexcept {
+        if (error_) return;
+        try {
+            work();
+        } catch (...) {
+            error_ = std::move(cutShort_);
+        }
+    }
+    void RecordCall(const void* function, std::span<const void* const> arguments) {
+        const auto found = numbers_.find(function);
+        if (found == numbers_.end()) {
+            error_ = Error{ErrorCode::Unsupported, "a call that is not in Recording/PublicCalls.h"};
+            return;
+        }
+        const bool isStep = function == StepTag();
+        if (isStep && hasCalls_) AddBodies();
+        Add(EntryKind::Call, [&](CallWriter& writer) {
+            writer.Write(found->second);
+            CallRows()[found->second].write(writer, arguments);
+        });
+        last_ = found->second;
+        hasCalls_ = !isStep;
+        if (isStep) Flush();
+    }
     // Settings, if the world is as it was created, else a snapshot.
     MaybeError AddWorld() {
         const auto fresh = PhysicsSystem::Create(system_.Settings());
@@ -208,6 +229,7 @@ private:
     }
     void AddBytes(EntryKind kind, const void* first, size_t firstSize, std::span<const uint8_t> second) {
         const uint64_t size = firstSize + second.size();
+        lastEntry_ = pending_.size();
         Append(&kind, sizeof kind);
         Append(&size, sizeof size);
         Append(first, firstSize);
@@ -232,6 +254,7 @@ private:
     Sink sink_;
     std::vector<CustomShapeFormat> customShapes_;
     MaybeError error_;
+    Error cutShort_{ErrorCode::BrokenWorld, "it ends where an exception cut it, or a step, short"};  // made beforehand
     std::unordered_map<const void*, uint16_t> numbers_;  // of functions, by tag
     std::map<std::pair<const Shape*, uint64_t>, uint32_t> shapes_;
     std::unordered_map<const GroupFilter*, uint32_t> filters_;
@@ -240,6 +263,7 @@ private:
     std::vector<const ContactListener*> listeners_;
     std::vector<std::byte> pending_, spare_;
     BodyHashes hashes_;
+    size_t lastEntry_ = 0;  // where it begins in pending_
     uint16_t last_ = 0;
     bool hasCalls_ = false, isDetached_ = true;
 };

@@ -63,6 +63,7 @@ void SnapshotAccess::Resize(JointStore& joints, uint32_t count) {
 
 void SnapshotAccess::FindAwakePlaces(BodyStore& bodies) {
     for (uint32_t place = 0; place < bodies.awake.size(); ++place) bodies.cold[bodies.awake[place]].awakePlace = place;
+    bodies.CountPlacedAsleep();
 }
 
 void SnapshotAccess::ListSpecial(BodyStore& bodies) {
@@ -142,6 +143,7 @@ void SnapshotAccess::UpdateTrees(const BodyStore& bodies, ColliderStore& store) 
 void SnapshotAccess::ClearColors(uint32_t bodies, ConstraintColoring& coloring) {
     for (ConstraintColoring::Color& color : coloring.colors_)
         for (Array<ConstraintColoring::Entry>& list : color.lists) list.clear();
+    coloring.postponed_.clear();
     coloring.ReserveBodies(bodies);
     std::ranges::fill(coloring.used_, uint64_t{0});
     std::ranges::fill(coloring.overflows_, 0u);

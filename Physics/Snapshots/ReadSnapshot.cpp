@@ -1,5 +1,5 @@
 // A snapshot is restored in two passes. The first finds, or makes, all that may be missing, and leaves the world as it
-// is; the second writes over it, and cannot fail.
+// is; the second writes over it, and can fail only where memory for what is larger than before runs out.
 #include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
@@ -284,10 +284,28 @@ void RestoreStep(SnapshotReader& s, WorldState& world, StepState& step) {
     world.heededShapeVersion = LatestShapeVersion();  // all shapes are as they were
 }
 
+// A broken world gets new stores in place of those that the second pass only adjusts; bodies, and types of joints, are
+// whole: nothing that may break a world creates or removes any.
+void DropBroken(WorldState& world, StepState& step) {
+    StepState fresh;
+    fresh.findings.resize(step.findings.size());
+    fresh.report = step.report;
+    ConstraintColoring coloring;
+    step = std::move(fresh);
+    world.coloring = std::move(coloring);
+    world.colliders = {};
+    world.pairs = {};
+    world.sleeping = {};
+    world.sensors = {};
+    world.pairs.KeepListenersData(world.listener != nullptr);
+    world.outsideFatBounds.Clear();
+    world.seenPoses.Hide();
+}
+
 }  // namespace
 
 Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources, SnapshotRoom& room,
-                    WorldState& world, StepState& step) {
+                    WorldState& world, StepState& step, const WorldLock::Exclusive& change) {
     const Result<SnapshotParts> parts = CheckSnapshot(bytes);
     if (!parts) return parts.GetError();
     SnapshotReader s(parts.Value().data);
@@ -301,6 +319,8 @@ Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sou
     if (Status filters = FindFilters(s, world.bodies, sources.groupFilters, found); !filters) return filters;
     if (Status types = FindJointTypes(s, world.joints, sources, room.settings, found); !types) return types;
 
+    change.Begin();
+    if (world.lock.IsBroken()) DropBroken(world, step);
     world.settings = found.head.settings;
     KeepForEvents(world);
     world.step = found.head.step;
@@ -321,6 +341,7 @@ Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sou
     RestoreStep(s, world, step);
     SnapshotAccess::VisitUserData(s, world);
     FULCRUM_ASSERT(!s.HasFailed() && s.IsAtEnd());
+    world.lock.Mend();
     return Done{};
 }
 

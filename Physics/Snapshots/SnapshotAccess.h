@@ -107,8 +107,8 @@ void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
 template <class Stream, class Bodies>
 void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
     auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
-           targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges, notesSleepChanges, free, count] =
-        bodies;
+           targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges, notesSleepChanges, free, count,
+           placedAsleep] = bodies;
     s.Begin(SnapshotSection::Bodies);
     VisitElements(s, bodies.Size(), kMostOfBody,
                   [&](auto& stream, uint32_t i) FULCRUM_FORCE_INLINE_LAMBDA { VisitBody(stream, bodies, i); });
@@ -244,7 +244,7 @@ bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
 
 template <class Stream, class Sleeping>
 void SnapshotAccess::VisitSleeping(Stream& s, Sleeping& sleeping) {
-    auto& [islands, free] = sleeping;
+    auto& [pending, inside, islands, free] = sleeping;
     s.Begin(SnapshotSection::Sleeping);
     VisitList(s, islands, 0, [&](auto& bodies) { s.List(bodies); });
     s.List(free);

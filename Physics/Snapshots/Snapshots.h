@@ -56,9 +56,10 @@ void FinishSnapshot(uint64_t magic, uint64_t stateHash, const SnapshotWriter& wr
                     std::span<const SnapshotBlock> blocks, std::vector<std::byte>& bytes);
 
 // Errors: those of CheckSnapshot; UnknownId (a shape, a group filter or a joint type is unknown), Unsupported (only one
-// of the world and the snapshot has a contact listener). The world is unchanged then.
+// of the world and the snapshot has a contact listener). The world is unchanged then. A broken world is whole again
+// afterwards. change: begins when the world begins to be written.
 Status ReadSnapshot(std::span<const std::byte> bytes, const SnapshotSources& sources, SnapshotRoom& room,
-                    WorldState& world, StepState& step);
+                    WorldState& world, StepState& step, const WorldLock::Exclusive& change);
 
 // Writes the data shown by the type's VisitSettings to the list, replacing its contents.
 void ReadSettings(JointType& type, Array<std::byte>& settings);

@@ -268,6 +268,7 @@ void VisitEfforts(const SolverSettings& settings, const BodyStore& bodies, const
 }
 
 void RunStep(WorldState& world, StepState& state, double dt) {
+    world.coloring.Settle();
     ForgetRemoved(world);
     world.pendingTrees.Suspend();
     BeginReport(world, state);

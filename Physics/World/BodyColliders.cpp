@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/World/BodyColliders.h>
 
+#include <Fulcrum/Collision/Shapes/EmptyShape.h>
 #include <Fulcrum/Collision/Shapes/MutableCompound.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
@@ -16,10 +17,8 @@ const CompoundShape* AsCompound(const Shape& shape) {
     return shape.IsCompound() ? static_cast<const CompoundShape*>(&shape) : nullptr;
 }
 
-// The collider of a child of a mutable compound; allocates a further run if needed. Each further run is as long as all
-// before it, so that there are few.
+// The collider of a child of a mutable compound; allocates a further run if needed.
 uint32_t ColliderOf(WorldState& world, uint32_t body, uint32_t child) {
-    constexpr uint32_t kLeast = 8;
     ColliderStore& store = world.colliders;
     BodyCold& cold = world.bodies.cold[body];
     ColliderRun at{cold.firstCollider, cold.colliderCount, cold.MoreColliders()};
@@ -28,7 +27,7 @@ uint32_t ColliderOf(WorldState& world, uint32_t body, uint32_t child) {
         before += at.count;
         uint32_t next = at.next;
         if (next == ColliderStore::kNone) {
-            next = store.AddRun(std::max(before, kLeast));
+            next = store.AddRun(ColliderStore::LengthOfNextRun(before));
             (last == ColliderStore::kNone ? cold.children->moreColliders : store.runs[last].next) = next;
         }
         last = next;
@@ -95,16 +94,29 @@ ColliderShape PieceOfChild(const CompoundShape& compound, const CompoundShape::C
             .local = child.pose};
 }
 
-void SetShapeOf(WorldState& world, uint32_t body, const ShapePtr& shape) {
-    BodyCold& cold = world.bodies.cold[body];
-    if (IsEditable(*shape)) world.bodies.editable.Insert(body);
-    else world.bodies.editable.Erase(body);
-    cold.shape = shape;
-    cold.children.reset();
+OwnShape::OwnShape(const ShapePtr& given) : shape(given) {
     if (shape->Type() != ShapeType::MutableCompound) return;
-    const std::shared_ptr<MutableCompound> own = static_cast<const MutableCompound&>(*shape).Copy();
-    cold.shape = own;
-    cold.children = std::make_unique<BodyChildren>(BodyChildren{.compound = own.get(), .origin = own->Origin()});
+    const std::shared_ptr<MutableCompound> own = static_cast<const MutableCompound&>(*given).Copy();
+    shape = own;
+    children = std::make_unique<BodyChildren>(BodyChildren{.compound = own.get(), .origin = own->Origin()});
+}
+
+void SetShapeOf(WorldState& world, uint32_t body, OwnShape&& own) {
+    BodyCold& cold = world.bodies.cold[body];
+    if (IsEditable(*own.shape)) world.bodies.editable.Insert(body);
+    else world.bodies.editable.Erase(body);
+    cold.shape = std::move(own.shape);
+    cold.children = std::move(own.children);
+}
+
+const ShapePtr& ShapeOfWorldBody() {
+    static const ShapePtr kEmpty = EmptyShape::Create();
+    return kEmpty;
+}
+
+uint32_t ColliderCountOf(const Shape& shape) {
+    if (const CompoundShape* compound = AsCompound(shape)) return static_cast<uint32_t>(compound->Children().size());
+    return shape.Type() == ShapeType::Empty ? 0 : 1;
 }
 
 void MakeColliders(WorldState& world, uint32_t body) {
@@ -112,8 +124,7 @@ void MakeColliders(WorldState& world, uint32_t body) {
     BodyCold& cold = world.bodies.cold[body];
     const Shape& shape = *cold.shape;
     const CompoundShape* compound = AsCompound(shape);
-    cold.colliderCount =
-        compound ? static_cast<uint32_t>(compound->Children().size()) : (shape.Type() == ShapeType::Empty ? 0 : 1);
+    cold.colliderCount = ColliderCountOf(shape);
     cold.firstCollider = store.Allocate(cold.colliderCount);
     const bool moving = world.bodies.dynamics[body].motion != MotionType::Static;
     if (!cold.isSensor) (moving ? store.movingLayers : store.staticLayers) |= 1u << world.bodies.dynamics[body].layer;
@@ -137,6 +148,14 @@ void DropColliders(WorldState& world, uint32_t body) {
     store.FreeRuns(cold.MoreColliders());
     cold.firstCollider = cold.colliderCount = 0;
     if (cold.children) cold.children->moreColliders = ColliderStore::kNone;
+}
+
+uint32_t ColliderRoomOf(const WorldState& world, uint32_t body) {
+    uint32_t room = world.bodies.cold[body].colliderCount;
+    for (uint32_t run = world.bodies.cold[body].MoreColliders(); run != ColliderStore::kNone;
+         run = world.colliders.runs[run].next)
+        room += world.colliders.runs[run].count;
+    return room;
 }
 
 void UpdateChildCollider(WorldState& world, uint32_t body, uint32_t child) {

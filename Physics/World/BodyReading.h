@@ -9,6 +9,14 @@
 
 namespace fulcrum {
 
+// Whether the world may be read at all; what may not is reported.
+inline bool IsReadable(const WorldState& world) {
+    if (!world.lock.IsBroken()) [[likely]]
+        return true;
+    ReportMisuse(*world.lock.RefusalOfBroken());
+    return false;
+}
+
 class BodyReading {
 public:
     BodyReading(WorldState& world, bool locks, BodyId id, WorldLock::Access access = WorldLock::Access::Queries) {
@@ -20,7 +28,7 @@ public:
                 return;
             }
         }
-        exists_ = world.bodies.Find(id);
+        exists_ = (shared_ || IsReadable(world)) && world.bodies.Find(id);
     }
     // Whether the body exists and may be read.
     explicit operator bool() const { return exists_; }

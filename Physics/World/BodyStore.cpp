@@ -30,7 +30,7 @@ uint32_t BodyStore::Allocate() {
     return index;
 }
 
-void BodyStore::Reserve(size_t more) {
+void BodyStore::Reserve(size_t more, size_t placedMore) {
     const size_t grown = more - std::min(more, free_.size());
     ReserveMore(states, grown);
     ReserveMore(masses, grown);
@@ -39,18 +39,25 @@ void BodyStore::Reserve(size_t more) {
     ReserveMore(dynamics, grown);
     ReserveMore(cold, grown);
     ReserveMore(remainders, grown);
-    ReserveMore(awake, more);
-    ReserveMore(placed, more);
+    const size_t size = Size() + grown;
+    for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable})
+        set->ReserveRoom(static_cast<uint32_t>(size));
+    ReserveRoom(awake, size);
+    ReserveMore(placed, placedAsleep_ + placedMore);
+    // Two for a body that falls asleep again.
+    if (notesSleepChanges) ReserveMore(sleepChanges, size - awake.size() + 2);
 }
 
 void BodyStore::Free(uint32_t index) {
     const uint32_t generation = cold[index].generation + 1;
+    const bool isPlacedAsleep = cold[index].placed && !dynamics[index].awake;
     states[index] = {};
     masses[index] = {};
     poses[index] = {};
     dynamics[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
+    placedAsleep_ -= isPlacedAsleep;
     for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable}) set->Erase(index);
     // After the last generation the index is not used again, so that no id becomes valid again.
     if (generation != 0) free_.push_back(index);
@@ -62,7 +69,10 @@ void BodyStore::MarkAwake(uint32_t index) {
     dynamics[index].awake = true;
     if (notesSleepChanges) sleepChanges.push_back(index);
     dynamics[index].slowSeconds = 0;
-    if (cold[index].placed) placed.push_back(index);
+    if (cold[index].placed) {
+        placed.push_back(index);
+        --placedAsleep_;
+    }
     cold[index].awakePlace = static_cast<uint32_t>(awake.size());
     awake.push_back(index);
 }
@@ -70,6 +80,7 @@ void BodyStore::MarkAwake(uint32_t index) {
 void BodyStore::MarkPlaced(uint32_t index) {
     if (cold[index].placed) return;
     cold[index].placed = true;
+    placedAsleep_ += !dynamics[index].awake;
     // One that sleeps is listed as it wakes; until then the list need only say that there is one.
     if (dynamics[index].motion != MotionType::Dynamic || dynamics[index].awake || placed.empty())
         placed.push_back(index);
@@ -77,16 +88,29 @@ void BodyStore::MarkPlaced(uint32_t index) {
 
 void BodyStore::ForgetPlaced() {
     for (const uint32_t body : placed) {
-        cold[body].placed &= dynamics[body].motion == MotionType::Dynamic && !dynamics[body].awake;
+        if (dynamics[body].awake) cold[body].placed = false;
+        else if (dynamics[body].motion != MotionType::Dynamic) UnmarkPlaced(body);
     }
     placed.clear();
     constexpr size_t kMostKept = 64;  // capacity: levels are created once
     if (placed.capacity() > kMostKept) placed = {};
 }
 
+void BodyStore::UnmarkPlaced(uint32_t index) {
+    if (!cold[index].placed) return;
+    cold[index].placed = false;
+    placedAsleep_ -= !dynamics[index].awake;
+}
+
+void BodyStore::CountPlacedAsleep() {
+    placedAsleep_ = 0;
+    for (uint32_t i = 0; i < Size(); ++i) placedAsleep_ += cold[i].placed && !dynamics[i].awake;
+}
+
 void BodyStore::MarkAsleep(uint32_t index) {
     if (!dynamics[index].awake) return;
     dynamics[index].awake = false;
+    placedAsleep_ += cold[index].placed;
     if (notesSleepChanges) sleepChanges.push_back(index);
     const uint32_t place = cold[index].awakePlace;
     awake[place] = awake.back();
@@ -195,10 +219,10 @@ size_t HeapBytes(const BodyCold& body) {
 size_t HeapBytes(const BodyStore& store) {
     const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
                  continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
-                 notesSleepChanges, free, count] = store;
+                 notesSleepChanges, free, count, placedAsleep] = store;
     return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
                      continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
-                     notesSleepChanges, free, count);
+                     notesSleepChanges, free, count, placedAsleep);
 }
 
 }  // namespace fulcrum

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
+#include <utility>
 
 namespace fulcrum {
 
@@ -249,9 +250,11 @@ public:
 
     uint32_t Size() const { return static_cast<uint32_t>(cold.size()); }  // of the arrays
     uint32_t Count() const { return count_; }                             // of the bodies
-    void Reserve(size_t more);                                            // for so many more bodies
-    uint32_t Allocate();                                                  // an index with default values; exists is set
-    void Free(uint32_t index);                                            // after Remove: the index may be reused
+    // For so many more bodies, and for the lists of those that wake or fall asleep, once each, and of `placed` that are
+    // placed: until then none of these asks for memory.
+    void Reserve(size_t more, size_t placed);
+    uint32_t Allocate();        // an index with default values; exists is set
+    void Free(uint32_t index);  // after Remove: the index may be reused
     // Whether the id is that of an existing body; then id.index is its index. The body of the world has none: its index
     // and generation may be those of an id that was given out before a snapshot was restored.
     bool Find(BodyId id) const {
@@ -267,8 +270,11 @@ public:
         static const BodyFilter kDefault;
         return cold[index].filter ? *cold[index].filter : kDefault;
     }
-    void SetFilter(uint32_t index, const BodyFilter& filter) {
-        cold[index].filter = filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
+    static std::unique_ptr<BodyFilter> MakeFilter(const BodyFilter& filter) {
+        return filter.IsDefault() ? nullptr : std::make_unique<BodyFilter>(filter);
+    }
+    void SetFilter(uint32_t index, std::unique_ptr<BodyFilter> filter) {
+        cold[index].filter = std::move(filter);
         UpdateSpecial(index);
     }
 
@@ -283,6 +289,8 @@ public:
     // the one in which it wakes, count as placed by the user (Stages/CrowdContacts.h).
     void MarkPlaced(uint32_t index);
     void ForgetPlaced();
+    void UnmarkPlaced(uint32_t index);  // the body is not dynamic any more
+    void CountPlacedAsleep();           // after a snapshot was read
     void MarkAsleep(uint32_t index);
 
     // Sets them from its shape.
@@ -343,6 +351,7 @@ private:
     friend struct SnapshotAccess;
     Array<uint32_t> free_;
     uint32_t count_ = 0;
+    uint32_t placedAsleep_ = 0;  // bodies that will be in `placed` again when they wake
 };
 
 }  // namespace fulcrum

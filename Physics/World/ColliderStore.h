@@ -55,11 +55,19 @@ public:
         return c.sensor ? sensorTree : c.moving ? movingTree : staticTree;
     }
     BoundsTree& TreeOf(const Collider& c) { return c.sensor ? sensorTree : c.moving ? movingTree : staticTree; }
-    void Reserve(size_t more);          // for so many more colliders
+    // For so many more colliders, and for the list of those that move.
+    void Reserve(size_t more);
+    bool HasFree(uint32_t count) const { return count < free_.size() && !free_[count].empty(); }
+    // For Free, of a body's colliders.
+    void ReserveFree(uint32_t count, uint32_t run);
     uint32_t Allocate(uint32_t count);  // index of the first of `count` consecutive ones
     void Free(uint32_t first, uint32_t count);
     uint32_t AddRun(uint32_t count);  // index of a further run
-    void FreeRuns(uint32_t run);      // this one and those that follow it
+    // Each further run of a body is as long as all before it, so that there are few.
+    static uint32_t LengthOfNextRun(uint32_t before) { return before > 8 ? before : 8; }
+    // For AddRun of a body with so many colliders. Returns how many it adds to the store.
+    uint32_t ReserveRun(uint32_t before);
+    void FreeRuns(uint32_t run);  // this one and those that follow it
     void Queue(uint32_t collider) {
         if (colliders[collider].queued) return;
         colliders[collider].queued = true;

@@ -1,7 +1,6 @@
 #include <Fulcrum/Physics/World/Filters.h>
 
 #include <Fulcrum/Physics/ContactListener.h>
-#include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/Materials.h>
 #include <Fulcrum/Physics/World/Waking.h>
@@ -53,9 +52,8 @@ bool ListenerAllows(const ContactListener* listener, const BodyStore& bodies, ui
     return listener->ShouldCollide(bodies.IdOf(low), bodies.IdOf(high));
 }
 
-void RemoveForbiddenPairs(WorldState& world, uint32_t body) {
-    VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body, 1},
-                 [&](uint32_t pair) { RemoveIfForbidden(world, pair); });
+void RemoveForbiddenPairs(WorldState& world, std::span<const uint32_t> pairs) {
+    for (const uint32_t pair : pairs) RemoveIfForbidden(world, pair);
 }
 
 void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before) {

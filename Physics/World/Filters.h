@@ -6,6 +6,7 @@
 #include <Fulcrum/Physics/World/WorldState.h>
 
 #include <array>
+#include <span>
 
 namespace fulcrum {
 
@@ -35,8 +36,8 @@ inline bool MayCollide(const SystemSettings& settings, const BodyStore& bodies, 
     return (a.awake || b.awake) && CanCollide(settings, bodies, joints, bodyA, bodyB);
 }
 
-// Removes the pairs of a body that its filters no longer allow; their bodies wake.
-void RemoveForbiddenPairs(WorldState& world, uint32_t body);
+// Removes those of the pairs that filters no longer allow; their bodies wake.
+void RemoveForbiddenPairs(WorldState& world, std::span<const uint32_t> pairs);
 // After a change of layerCollides from `before`: removes forbidden pairs, and has newly allowed ones searched for.
 void RefilterLayers(WorldState& world, const std::array<uint32_t, 32>& before);
 // Replaces the listener (null: none); all contacts have their materials' properties until it is called.

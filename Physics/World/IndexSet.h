@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Math/Memory.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,11 @@ public:
     // Reserves 0..count - 1.
     void Reserve(uint32_t count) {
         if (words_.size() * 64 < count) words_.resize((count + 63) / 64, 0);
+    }
+    // So that Reserve(count) asks for no memory.
+    void ReserveRoom(uint32_t count) {
+        const size_t words = (size_t{count} + 63) / 64, room = words_.capacity();
+        if (words > room) words_.reserve(std::max(words, room + room / 8 + 2));
     }
     bool Contains(uint32_t i) const { return i / 64 < words_.size() && (words_[i / 64] >> i % 64 & 1) != 0; }
     // i must be below the reserved count. Returns whether the set changed.

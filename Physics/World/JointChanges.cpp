@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/World/JointChanges.h>
 
+#include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
@@ -23,6 +24,19 @@ std::optional<MotionType> MotionOf(const WorldState& world, BodyId id) {
     if (id == kWorldBody) return MotionType::Static;
     if (!world.bodies.Find(id)) return std::nullopt;
     return world.bodies.dynamics[id.index].motion;
+}
+
+void IncludeJoint(const WorldState& world, const JointSettings& settings, Additions& more) {
+    ++more.joints;
+    for (const BodyId body : {settings.bodyA, settings.bodyB})
+        more.worldBody |= body == kWorldBody && world.bodies.worldBody == BodyStore::kNone;
+    if (more.worldBody) (void)ShapeOfWorldBody();  // is made now
+    if (!settings.collideConnected && world.bodies.Find(settings.bodyA))
+        more.removedPairs += CountPairsOf(world, settings.bodyA.index);
+}
+
+size_t PairsEndedBy(const WorldState& world, const Joint& joint) {
+    return joint.collideConnected ? 0 : CountPairsOf(world, joint.body[0]);
 }
 
 void WakeBodiesOf(WorldState& world, const Joint& joint) {

@@ -30,12 +30,17 @@ uint32_t JointStore::Allocate() {
     return index;
 }
 
-void JointStore::Reserve(size_t more) {
+void JointStore::Reserve(size_t more, size_t bodies) {
     const size_t grown = more - std::min(more, free_.size());
     ReserveMore(joints, grown);
     ReserveMore(records, grown);
     ReserveMore(types, grown);
     ReserveMore(gaps, grown);
+    const size_t size = joints.size() + grown;
+    if (size == 0) return;
+    breakable.ReserveRoom(static_cast<uint32_t>(size));
+    ReserveRoom(first_, bodies);
+    ReserveRoom(free_, size);
 }
 
 void JointStore::Free(uint32_t index) {

@@ -87,7 +87,8 @@ public:
     uint64_t strainVersion = 0;  // incremented when a joint begins to be strained
 
     uint32_t Count() const { return count_; }
-    void Reserve(size_t more);  // room for more joints
+    // Room for more joints of bodies below `bodies`, and to free all.
+    void Reserve(size_t more, size_t bodies);
     uint32_t Allocate();        // an index with default values; exists is set
     void Free(uint32_t index);  // must be neither linked nor colored
     bool Find(JointId id) const {

@@ -117,8 +117,28 @@ void PairStore::KeepListenersData(bool keep) {
 void PairStore::KeepReported(bool keep) {
     if (keep == keepsReported_) return;
     keepsReported_ = keep;
-    reported = Array<ReportedContact>(keep ? pairs.size() : 0);
+    if (keep) reported.assign(pairs.size(), {});
+    else reported = {};
     ended = {};
+}
+
+void PairStore::ReserveListenersData() {
+    ReserveRoom(massOverrides, contacts.size());
+    ReserveRoom(surfaceVelocities, contacts.size());
+}
+
+void PairStore::ReserveReported() { ReserveRoom(reported, pairs.size()); }
+
+void PairStore::ReserveRemovals(size_t count) {
+    if (keepsReported_) ReserveMore(ended, count);
+}
+
+size_t PairStore::CountOf(uint32_t collider) const {
+    size_t count = 0;
+    VisitOf(collider, [&](uint32_t index) {
+        for (; index != kNone; index = MoreOf(index)) ++count;
+    });
+    return count;
 }
 
 uint32_t PairStore::AddMore(uint32_t of) {

@@ -68,8 +68,14 @@ public:
     Array<ReportedContact> reported;
     Array<ReportedContact> ended;  // for pairs removed since the last events
     void KeepReported(bool keep);
-    Array<LoadLevel> loads;    // by pair: kept while it has no contact
-    uint64_t loadVersion = 1;  // incremented when a load level changes, also of joints
+    // So that the next of these ask for no memory: KeepListenersData(true), KeepReported(true), Remove of `count`
+    // pairs.
+    void ReserveListenersData();
+    void ReserveReported();
+    void ReserveRemovals(size_t count);
+    size_t CountOf(uint32_t collider) const;  // pairs, with all their manifolds
+    Array<LoadLevel> loads;                   // by pair: kept while it has no contact
+    uint64_t loadVersion = 1;                 // incremented when a load level changes, also of joints
     IndexSet active;
 
     // Index of the pair of two colliders, or kNone.

@@ -2,6 +2,8 @@
 
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Reservations.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <limits>
@@ -78,6 +80,9 @@ bool AreShapesEditedSince(const BodyStore& bodies, uint64_t version) {
 }
 
 void HeedShapeEditsUntil(WorldState& world, uint64_t latest) {
+    // Before anything is changed: the call that heeds the edits may not take place.
+    ReserveForChange(world, {.placed = world.bodies.editable.Size()});
+    if (!world.sensors.IsEmpty()) ReserveMore(world.sensors.changed, world.bodies.editable.Size());
     const uint64_t since = std::exchange(world.heededShapeVersion, latest);
     world.bodies.editable.Visit([&](uint32_t body) {
         const BodyCold& cold = world.bodies.cold[body];

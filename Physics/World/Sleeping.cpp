@@ -3,6 +3,8 @@
 #include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Reservations.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
 
 namespace fulcrum {
@@ -68,14 +70,23 @@ void RestPairs(const BodyStore& bodies, PairStore& pairs, ConstraintColoring& co
     });
 }
 
-void SleepIslandOf(WorldState& world, uint32_t body) {
+Array<uint32_t> IslandToSleep(WorldState& world, uint32_t body) {
+    ReserveForChange(world);
     Array<uint32_t> roots(world.bodies.awake.size());
     FindAwakeIslands(world.bodies, world.pairs, world.coloring, roots);
     const uint32_t root = roots[world.bodies.cold[body].awakePlace];
     Array<uint32_t> members;
     for (size_t i = 0; i < roots.size(); ++i)
         if (roots[i] == root) members.push_back(world.bodies.awake[i]);
-    PutToSleep(world, world.outsideFatBounds, members);
+    if (world.bodies.notesSleepChanges) ReserveMore(world.bodies.sleepChanges, members.size());
+    Array<uint32_t> room;
+    room.reserve(members.size());
+    world.sleeping.Reserve(std::move(room));
+    return members;
+}
+
+void SleepAsIsland(WorldState& world, std::span<const uint32_t> bodies) {
+    PutToSleep(world, world.outsideFatBounds, bodies);
     RestPairs(world.bodies, world.pairs, world.coloring);
 }
 

@@ -17,7 +17,9 @@ void PutToSleep(const SleepStores& stores, CollidersOutsideFatBounds& outsideFat
                 std::span<const uint32_t> bodies);
 // Deactivates pairs without an awake body, until one of their bodies wakes.
 void RestPairs(const BodyStore& bodies, PairStore& pairs, ConstraintColoring& coloring);
-// Puts the island of an awake body to sleep, slow or not.
-void SleepIslandOf(WorldState& world, uint32_t body);
+// The bodies of the island of an awake body, for SleepAsIsland, which then puts them to sleep, slow or not, and asks
+// for no memory.
+Array<uint32_t> IslandToSleep(WorldState& world, uint32_t body);
+void SleepAsIsland(WorldState& world, std::span<const uint32_t> bodies);
 
 }  // namespace fulcrum

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/World/SleepingIslands.h>
 
 #include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/ReserveMore.h>
 
 #include <algorithm>
 
@@ -19,6 +20,19 @@ uint32_t SleepingIslands::Add(std::span<const uint32_t> bodies) {
     return island;
 }
 
+void SleepingIslands::ReserveRemoval() { ReserveRoom(free_, islands_.size()); }
+
+void SleepingIslands::Reserve(Array<uint32_t>&& room) {
+    if (free_.empty()) {
+        ReserveMore(islands_, 1);
+        ReserveRoom(free_, islands_.size() + 1);
+        islands_.emplace_back();
+        free_.push_back(static_cast<uint32_t>(islands_.size()) - 1);
+    }
+    islands_[free_.back()].swap(room);
+    islands_[free_.back()].clear();
+}
+
 void SleepingIslands::Remove(uint32_t island) {
     islands_[island].clear();
     free_.push_back(island);
@@ -31,8 +45,8 @@ void SleepingIslands::RemoveBody(uint32_t island, uint32_t body) {
 }
 
 size_t HeapBytes(const SleepingIslands& sleeping) {
-    const auto& [islands, free] = sleeping;
-    return HeapBytes(islands, free);
+    const auto& [pending, inside, islands, free] = sleeping;
+    return HeapBytes(pending, inside, islands, free);
 }
 
 }  // namespace fulcrum

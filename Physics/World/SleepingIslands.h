@@ -12,8 +12,13 @@ class SleepingIslands {
 public:
     static constexpr uint32_t kNone = ~0u;
 
+    // Used while bodies wake.
+    Array<uint32_t> pending, inside;
+
     // Adds an island of `bodies`; returns its index.
     uint32_t Add(std::span<const uint32_t> bodies);
+    void Reserve(Array<uint32_t>&& bodies);  // so that Add of these asks for no memory
+    void ReserveRemoval();                   // of all islands
     std::span<const uint32_t> Bodies(uint32_t island) const { return islands_[island]; }
     void Remove(uint32_t island);
     void RemoveBody(uint32_t island, uint32_t body);  // removing the last body removes the island

@@ -18,7 +18,9 @@ namespace {
 void NoteTeleport(WorldState& world, uint32_t body) {
     constexpr float kSecondsOfTeleport = 5;  // in which a mechanism comes together, see Docs/Joints.md
     JointStore& store = world.joints;
-    Array<uint32_t> bodies{body};
+    Array<uint32_t>& bodies = world.sleeping.pending;
+    bodies.clear();
+    bodies.push_back(body);
     while (!bodies.empty()) {
         const uint32_t from = bodies.back();
         bodies.pop_back();
@@ -56,47 +58,40 @@ void WakeAround(WorldState& world, uint32_t body) {
     WakeJoined(world, body);
 }
 
-// Of bodies, where they were.
-class PosesBefore {
-public:
-    PosesBefore(const BodyStore& bodies, std::span<const BodyPlace> places) : bodies_(bodies) {
-        for (const BodyPlace& place : places) before_.push_back({place.body, bodies.ExactCenterPoseOf(place.body)});
-        std::ranges::sort(before_, {}, &BodyPlace::body);
-    }
-    // Whether joints hold the body to one that was not moved, or to which it was not moved along with it.
-    bool IsTorn(const JointStore& joints, uint32_t body) const {
-        bool isTorn = false;
-        joints.VisitOf(body, [&](uint32_t index) {
-            const Joint& joint = joints.joints[index];
-            isTorn |= !MovedTogether(body, joint.body[1 - joint.SideOf(body)]);
-        });
-        return isTorn;
-    }
-
-private:
-    bool MovedTogether(uint32_t a, uint32_t b) const {
-        constexpr float kSame = 1e-4f;  // m and rad: more than rounding far out leaves, less than shows
-        const BodyPlace *beforeA = Find(a), *beforeB = Find(b);
-        if (!beforeA || !beforeB) return false;
-        const RelativePose then = Relative(beforeA->pose, beforeB->pose),
-                           now = Relative(bodies_.ExactCenterPoseOf(a), bodies_.ExactCenterPoseOf(b));
-        return Length(Vector3(now.position - then.position)) <= kSame &&
-               Length(RotationVectorOf<float>(now.rotation * then.rotation.Conjugate())) <= kSame;
-    }
-    const BodyPlace* Find(uint32_t body) const {
-        const auto found = std::ranges::lower_bound(before_, body, {}, &BodyPlace::body);
-        return found != before_.end() && found->body == body ? &*found : nullptr;
-    }
-
-    const BodyStore& bodies_;
-    Array<BodyPlace> before_;  // center frames
-};
-
 }  // namespace
 
-void Teleport(WorldState& world, std::span<const BodyPlace> places) {
+PosesBefore::PosesBefore(const BodyStore& bodies, std::span<const BodyPlace> places) : bodies_(bodies) {
+    before_.reserve(places.size());
+    for (const BodyPlace& place : places) before_.push_back({place.body, bodies.ExactCenterPoseOf(place.body)});
+    std::ranges::sort(before_, {}, &BodyPlace::body);
+}
+
+bool PosesBefore::IsTorn(const JointStore& joints, uint32_t body) const {
+    bool isTorn = false;
+    joints.VisitOf(body, [&](uint32_t index) {
+        const Joint& joint = joints.joints[index];
+        isTorn |= !MovedTogether(body, joint.body[1 - joint.SideOf(body)]);
+    });
+    return isTorn;
+}
+
+bool PosesBefore::MovedTogether(uint32_t a, uint32_t b) const {
+    constexpr float kSame = 1e-4f;  // m and rad: more than rounding far out leaves, less than shows
+    const BodyPlace *beforeA = Find(a), *beforeB = Find(b);
+    if (!beforeA || !beforeB) return false;
+    const RelativePose then = Relative(beforeA->pose, beforeB->pose),
+                       now = Relative(bodies_.ExactCenterPoseOf(a), bodies_.ExactCenterPoseOf(b));
+    return Length(Vector3(now.position - then.position)) <= kSame &&
+           Length(RotationVectorOf<float>(now.rotation * then.rotation.Conjugate())) <= kSame;
+}
+
+const BodyPlace* PosesBefore::Find(uint32_t body) const {
+    const auto found = std::ranges::lower_bound(before_, body, {}, &BodyPlace::body);
+    return found != before_.end() && found->body == body ? &*found : nullptr;
+}
+
+void Teleport(WorldState& world, std::span<const BodyPlace> places, const PosesBefore& before) {
     for (const BodyPlace& place : places) WakeAround(world, place.body);
-    const PosesBefore before(world.bodies, places);
     for (const auto& [body, pose] : places) {
         const Vector3 center = world.bodies.cold[body].shape->Mass().centerOfMass;
         world.bodies.SetCenterPose(body, {pose.position + Rotate(pose.rotation, center).cast<double>(), pose.rotation});

@@ -14,8 +14,23 @@ struct BodyPlace {
     Pose pose{};  // the rotation is a unit quaternion
 };
 
+// Of bodies that are teleported, where they were.
+class PosesBefore {
+public:
+    PosesBefore(const BodyStore& bodies, std::span<const BodyPlace> places);
+    // Whether joints hold the body to one that was not moved, or to which it was not moved along with it.
+    bool IsTorn(const JointStore& joints, uint32_t body) const;
+
+private:
+    bool MovedTogether(uint32_t a, uint32_t b) const;
+    const BodyPlace* Find(uint32_t body) const;
+
+    const BodyStore& bodies_;
+    Array<BodyPlace> before_;  // center frames
+};
+
 // Puts bodies, each named once, there at once; they wake, with what rested on them and what they now touch. Mechanisms
-// whose joints are no farther apart than before do not notice. A frozen body is free again.
-void Teleport(WorldState& world, std::span<const BodyPlace> places);
+// whose joints are no farther apart than before do not notice. A frozen body is free again. before: made just before.
+void Teleport(WorldState& world, std::span<const BodyPlace> places, const PosesBefore& before);
 
 }  // namespace fulcrum

@@ -38,7 +38,9 @@ void WakeBody(const SleepStores& stores, uint32_t body) {
         stores.bodies.dynamics[body].slowSeconds = 0;
         return;
     }
-    Array<uint32_t> pending = {body};
+    Array<uint32_t>& pending = stores.sleeping.pending;
+    pending.clear();
+    pending.push_back(body);
     const auto wake = [&](uint32_t member) {
         WakeOne(stores, member);
         stores.joints.VisitOf(member, [&](uint32_t index) {
@@ -71,7 +73,8 @@ void WakeJoined(const SleepStores& stores, uint32_t body) {
 
 void WakeInside(const SleepStores& stores, const Bounds& bounds) {
     // Collects the bodies first, since the world must not change during a query.
-    Array<uint32_t> found;
+    Array<uint32_t>& found = stores.sleeping.inside;
+    found.clear();
     stores.colliders.movingTree.Query(
         bounds, [&](uint32_t collider) { found.push_back(stores.colliders.colliders[collider].body); });
     std::sort(found.begin(), found.end());

@@ -9,6 +9,7 @@
 #include <Fulcrum/Physics/CallObserver.h>
 #include <Fulcrum/Physics/World/ShapeEdits.h>
 
+#include <exception>
 #include <type_traits>
 
 namespace fulcrum {
@@ -27,6 +28,11 @@ public:
             return;
         const void* const addresses[] = {&arguments...};
         observer_->BeginCall(&kCallTag<kFunction>, addresses);
+        exceptions_ = std::uncaught_exceptions();
+    }
+    ~WorldChange() {
+        if (exceptions_ >= 0 && std::uncaught_exceptions() > exceptions_) [[unlikely]]
+            observer_->CancelCall();
     }
     // For what the call creates, on the way to the caller.
     template <class Value>
@@ -39,6 +45,7 @@ public:
 
 private:
     CallObserver* observer_;
+    int exceptions_ = -1;  // in flight when the observer was told of the call; -1: it was not
 };
 
 }  // namespace fulcrum

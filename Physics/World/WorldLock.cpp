@@ -5,9 +5,11 @@
 // waiting thread sees it, since no writer enters while that thread counts as inside.
 #include <Fulcrum/Physics/World/WorldLock.h>
 
+#include <Fulcrum/Jobs/FirstException.h>
 #include <Fulcrum/Math/Assert.h>
 
 #include <atomic>
+#include <exception>
 
 namespace fulcrum {
 
@@ -142,6 +144,23 @@ std::optional<Error> WorldLock::RefusalOfChanging(const WorldLock& lock) {
     return std::nullopt;
 }
 
+std::optional<Error> WorldLock::RefusalOfBroken() const {
+    if (!IsBroken()) [[likely]]
+        return std::nullopt;
+    return Error{
+        ErrorCode::BrokenWorld,
+        "an earlier step or call was cut short by an exception, as when memory ran out, and has left the world "
+        "in between; restore it from a snapshot, or destroy it"};
+}
+
+void WorldLock::Mend() { __atomic_store_n(&isBroken_, false, __ATOMIC_RELAXED); }
+
+// A step may be cut short while it lets queries in.
+void WorldLock::Break() {
+    __atomic_store_n(&isBroken_, true, __ATOMIC_RELAXED);
+    if (LetsQueriesIn()) state_->Close();
+}
+
 WorldLock::Scope::Scope(WorldLock& lock, Access access)
     : MemoryScope(lock.memory_), lock_(lock), before_(OfThisThread(lock)), outer_(tInnermost), access_(access) {
     tInnermost = this;
@@ -163,7 +182,9 @@ WorldLock::Access NestedReads(WorldLock::Access before, WorldLock::Access access
 }  // namespace
 
 // Checks for refusal before the scope becomes this thread's innermost.
-WorldLock::Shared::Shared(WorldLock& lock, Access access) : Shared(lock, access, RefusalOfReading(lock, access)) {}
+WorldLock::Shared::Shared(WorldLock& lock, Access access) : Shared(lock, access, RefusalOfReading(lock, access)) {
+    if (!refusal_) refusal_ = lock.RefusalOfBroken();
+}
 WorldLock::Shared::Shared(WorldLock& lock, Access access, std::optional<Error> refusal)
     : Scope(lock, NestedReads(OfThisThread(lock), access)), refusal_(std::move(refusal)) {
     if (before_ != Access::None) return;
@@ -175,13 +196,18 @@ WorldLock::Shared::~Shared() {
     if (taken_ != Access::None) lock_.state_->LeaveAsReader(taken_ == Access::Queries);
 }
 
-WorldLock::Exclusive::Exclusive(WorldLock& lock, Access access) : Exclusive(lock, access, RefusalOfChanging(lock)) {}
+WorldLock::Exclusive::Exclusive(WorldLock& lock, Access access) : Exclusive(lock, access, RefusalOfChanging(lock)) {
+    if (!refusal_) refusal_ = lock.RefusalOfBroken();
+}
 WorldLock::Exclusive::Exclusive(WorldLock& lock, Access access, std::optional<Error> refusal)
     : Scope(lock, refusal ? OfThisThread(lock) : access), refusal_(std::move(refusal)) {
     if (before_ == Access::None) lock_.state_->EnterAsWriter();
 }
 
+void WorldLock::Exclusive::Begin() const { exceptions_ = std::uncaught_exceptions(); }
+
 WorldLock::Exclusive::~Exclusive() {
+    if (exceptions_ >= 0 && std::uncaught_exceptions() > exceptions_) lock_.Break();
     if (before_ == Access::None) lock_.state_->LeaveAsWriter();
 }
 
@@ -207,19 +233,23 @@ void WorldJobs::ParallelFor(uint32_t count, uint32_t minimumRange, FunctionRef<v
         if (count > 0) job({0, count, 0});
         return;
     }
+    FirstException thrown;
     jobs_->ParallelFor(count, minimumRange, [&](JobRange range) {
         const WorldLock::Scope scope(lock_, access);
-        job(range);
+        if (!thrown.HasAny()) thrown.Run([&] { job(range); });
     });
+    thrown.Rethrow();
 }
 
 void WorldJobs::RunOnWorkers(FunctionRef<void(uint32_t worker)> job) {
     if (!jobs_) return job(0);
     const WorldLock::Access access = WorldLock::OfThisThread(lock_);
+    FirstException thrown;
     jobs_->RunOnWorkers([&](uint32_t worker) {
         const WorldLock::Scope scope(lock_, access);
-        job(worker);
+        thrown.Run([&] { job(worker); });
     });
+    thrown.Rethrow();
 }
 
 }  // namespace fulcrum

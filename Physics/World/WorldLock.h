@@ -5,6 +5,9 @@
 //
 // Access is recorded per thread: nested access of a kind that the thread already has takes no lock, and access that
 // would deadlock is refused. The world's memory is the current one of the thread meanwhile (Memory.h).
+//
+// A writer that is cut short by an exception after its Begin() leaves a broken world. Access to it is refused, but for
+// the writer that restores it.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -33,6 +36,9 @@ public:
     // Why this thread may not read or change the world now; empty if it may.
     static std::optional<Error> RefusalOfReading(const WorldLock& lock, Access access = Access::Reads);
     static std::optional<Error> RefusalOfChanging(const WorldLock& lock);
+    bool IsBroken() const { return __atomic_load_n(&isBroken_, __ATOMIC_RELAXED); }
+    std::optional<Error> RefusalOfBroken() const;
+    void Mend();  // by a writer that has restored the world
 
     // Records this thread's access for the lifetime of the object, without taking the lock. Used directly by workers
     // that run jobs of a thread which holds the lock.
@@ -59,7 +65,7 @@ public:
         explicit Shared(WorldLock& lock, Access access = Access::Reads);
         ~Shared();
         // Empty unless this thread is changing or stepping the world, or holds it for queries alone and asks for more:
-        // then the object does nothing.
+        // then the object does nothing; or the world is broken.
         const std::optional<Error>& Refusal() const { return refusal_; }
 
     private:
@@ -73,12 +79,16 @@ public:
         // access: Changes, or Edits to change and read several times.
         explicit Exclusive(WorldLock& lock, Access access = Access::Changes);
         ~Exclusive();
-        // Empty unless this thread reads or changes the world already: then the object does nothing.
+        // Empty unless this thread reads or changes the world already: then the object does nothing; or the world is
+        // broken.
         const std::optional<Error>& Refusal() const { return refusal_; }
+        // From here on an exception leaves the world neither as it was nor as it should be.
+        void Begin() const;
 
     private:
         Exclusive(WorldLock& lock, Access access, std::optional<Error> refusal);
         std::optional<Error> refusal_;
+        mutable int exceptions_ = -1;  // in flight at Begin(); -1: it has not begun
     };
 
     // Called by a step: from now on what queries read does not change, until KeepQueriesOut returns. Nothing if this
@@ -91,12 +101,15 @@ public:
 private:
     struct State;  // so that <atomic>, which is slow to compile, stays out of programs
     bool IsStepsOwn() const;
+    void Break();
     const std::unique_ptr<State> state_;
     MemoryResource* const memory_;
+    bool isBroken_ = false;  // atomic
 };
 
 // A job system that gives workers the access of the thread whose job they run, while they run it. Jobs of queries
-// during a step run on the calling thread alone: the step needs the workers. So do all if `jobs` is null.
+// during a step run on the calling thread alone: the step needs the workers. So do all if `jobs` is null. What jobs
+// throw is thrown by the call, whatever the job system does with exceptions.
 class WorldJobs final : public JobSystem {
 public:
     FULCRUM_WORLD_MEMORY

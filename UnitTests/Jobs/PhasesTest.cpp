@@ -193,5 +193,33 @@ TEST(Phases, ShareTheirBlocksOut) {
     EXPECT_EQ(arrived, 20u);
 }
 
+// Whichever block throws, and on whichever worker: nobody waits for the blocks that are not run, and the pool goes on.
+TEST(Phases, WhatAKernelThrowsComesOut) {
+    ThreadPool pool(4);
+    SerialJobs serial(4);
+    const std::vector<uint32_t> counts = {7, 1, 1, 30, 3, 1};
+    for (JobSystem* const jobs : {static_cast<JobSystem*>(&pool), static_cast<JobSystem*>(&serial)}) {
+        for (uint32_t phase = 0; phase < counts.size(); ++phase) {
+            for (uint32_t block = 0; block < counts[phase]; block += 3) {
+                std::atomic<uint32_t> later{0};
+                const auto kernel = [&](uint32_t p, uint32_t b, uint32_t) {
+                    if (p > phase) ++later;
+                    if (p == phase && b == block) throw block;
+                };
+                try {
+                    RunPhases(*jobs, counts, kernel);
+                    ADD_FAILURE();
+                } catch (const uint32_t thrown) {
+                    EXPECT_EQ(thrown, block);
+                }
+                EXPECT_EQ(later, 0u);
+            }
+        }
+    }
+    std::atomic<uint32_t> ran{0};
+    RunPhases(pool, counts, [&](uint32_t, uint32_t, uint32_t) { ++ran; });
+    EXPECT_EQ(ran, 43u);
+}
+
 }  // namespace
 }  // namespace fulcrum

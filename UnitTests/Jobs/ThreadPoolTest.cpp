@@ -161,5 +161,22 @@ TEST(ThreadPool, WakesHelpersThatWentToSleep) {
     }
 }
 
+TEST(ThreadPool, WhatAJobThrowsComesOut) {
+    for (const uint32_t workers : {1u, 4u}) {
+        ThreadPool pool(workers);
+        for (uint32_t item = 0; item < 100; item += 7) {
+            const auto job = [&](JobRange range) {
+                if (range.begin <= item && item < range.end) throw item;
+            };
+            EXPECT_THROW(pool.ParallelFor(100, 1, job), uint32_t);
+        }
+        EXPECT_THROW(pool.RunOnWorkers([](uint32_t worker) { throw worker; }), uint32_t);
+        // The helpers are there for the next job.
+        std::atomic<uint32_t> ran{0};
+        pool.ParallelFor(1000, 1, [&](JobRange range) { ran += range.end - range.begin; });
+        EXPECT_EQ(ran, 1000u);
+    }
+}
+
 }  // namespace
 }  // namespace fulcrum

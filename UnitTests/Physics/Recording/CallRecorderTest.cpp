@@ -3,6 +3,7 @@
 #include <Fulcrum/Physics/Files/WholeFile.h>
 #include <Fulcrum/Physics/Recording/PublicCalls.h>
 #include <Fulcrum/UnitTests/Physics/Recording/RecordedProgram.h>
+#include <Fulcrum/UnitTests/Support/FailingMemory.h>
 #include <Fulcrum/UnitTests/Support/FullDisk.h>
 #include <Fulcrum/UnitTests/Support/MixedScene.h>
 #include <Fulcrum/UnitTests/Support/PublicHeaders.h>
@@ -252,6 +253,22 @@ TEST(CallRecorder, NamesCustomShapesByTheirContent) {
     const Result<ReplayReport> without = Replay(Parsed(bytes), {.sources = {.shapes = {shapes, 1}}});
     ASSERT_FALSE(without);
     EXPECT_NE(without.GetError().message.find("ReplaySources::shapes"), std::string::npos);
+}
+
+// A call that runs out of memory has had no effect, and is not in the recording: the replay would make it.
+TEST(CallRecorder, DoesNotRecordWhatRanOutOfMemory) {
+    FailingMemory memory;
+    const auto system = PhysicsSystem::Create({}, nullptr, &memory).Value();
+    const ShapePtr cube = CubeOf(0.5f);
+    const Bytes bytes = RecordingOf(*system, [&] {
+        const BodyId first = system->Bodies().Create({.shape = cube}).Value();
+        ASSERT_TRUE(system->Update(kStep));
+        memory.FailAt(1);
+        EXPECT_THROW((void)bool(system->Bodies().SetPose(first, {0, 5, 0}, {})), std::bad_alloc);
+        ASSERT_TRUE(system->Bodies().SetVelocity(first, {1, 0, 0}, {}));
+        ASSERT_TRUE(system->Update(kStep));
+    });
+    ExpectSameReplays(bytes, system->HashState());
 }
 
 }  // namespace
