@@ -5,6 +5,9 @@
 //
 // Access is recorded per thread: nested access of a kind that the thread already has takes no lock, and access that
 // would deadlock is refused. The world's memory is the current one of the thread meanwhile (Memory.h).
+//
+// Objects that hold the lock may end in any order: it is given back with the last of those within the one that took it.
+// They end on the thread that made them; elsewhere the program is stopped.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -36,7 +39,7 @@ public:
 
     // Records this thread's access for the lifetime of the object, without taking the lock. Used directly by workers
     // that run jobs of a thread which holds the lock.
-    class Scope : private MemoryScope {
+    class Scope {
     public:
         Scope(WorldLock& lock, Access access);
         ~Scope();
@@ -45,11 +48,13 @@ public:
 
     protected:
         WorldLock& lock_;
-        const Access before_;  // this thread's access outside the scope
+        Access taken_ = Access::None;  // of the lock, to be given back
 
     private:
         friend class WorldLock;
+        void EndBeforeInner();
         Scope* outer_;
+        MemoryResource* memoryBefore_;
         Access access_;
     };
 
@@ -57,27 +62,24 @@ public:
     public:
         // access: Queries or Reads.
         explicit Shared(WorldLock& lock, Access access = Access::Reads);
-        ~Shared();
         // Empty unless this thread is changing or stepping the world, or holds it for queries alone and asks for more:
         // then the object does nothing.
         const std::optional<Error>& Refusal() const { return refusal_; }
 
     private:
-        Shared(WorldLock& lock, Access access, std::optional<Error> refusal);
+        Shared(WorldLock& lock, Access access, Access before);
         std::optional<Error> refusal_;
-        Access taken_ = Access::None;
     };
 
     class Exclusive : public Scope {
     public:
         // access: Changes, or Edits to change and read several times.
         explicit Exclusive(WorldLock& lock, Access access = Access::Changes);
-        ~Exclusive();
         // Empty unless this thread reads or changes the world already: then the object does nothing.
         const std::optional<Error>& Refusal() const { return refusal_; }
 
     private:
-        Exclusive(WorldLock& lock, Access access, std::optional<Error> refusal);
+        Exclusive(WorldLock& lock, Access access, Access before);
         std::optional<Error> refusal_;
     };
 
@@ -91,6 +93,7 @@ public:
 private:
     struct State;  // so that <atomic>, which is slow to compile, stays out of programs
     bool IsStepsOwn() const;
+    void Leave(Access taken);
     const std::unique_ptr<State> state_;
     MemoryResource* const memory_;
 };
