@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Assets/Json/RagdollParts.h>
 #include <Fulcrum/Assets/Json/ShapeJson.h>
+#include <Fulcrum/Assets/TextFloats.h>
 #include <Fulcrum/Physics/Files/ErrorBoundary.h>
 #include <Fulcrum/Physics/Files/WholeFile.h>
 
@@ -71,11 +72,13 @@ Result<RagdollSettings> ReadRagdollFile(const std::filesystem::path& file, JsonB
 }
 
 Result<RagdollSettings> RagdollFromJson(const Json& document) {
+    const TextFloats floats;
     JsonBudget budget;
     return ReadRagdollParts(document, {}, budget);
 }
 
 Result<RagdollSettings> ReadRagdoll(const std::string& file) {
+    const TextFloats floats;
     JsonBudget budget;
     return ReadRagdollFile(file, budget);
 }

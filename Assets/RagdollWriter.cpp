@@ -3,6 +3,7 @@
 
 #include <Fulcrum/Assets/Json/JsonWriter.h>
 #include <Fulcrum/Assets/Json/ShapeJson.h>
+#include <Fulcrum/Assets/TextFloats.h>
 #include <Fulcrum/Physics/Files/ErrorBoundary.h>
 #include <Fulcrum/Physics/Files/WholeFile.h>
 
@@ -32,10 +33,12 @@ Result<Json> WrittenParts(const RagdollSettings& settings) {
 }  // namespace
 
 Result<Json> RagdollToJson(const RagdollSettings& settings) {
+    const TextFloats floats;
     return WithErrors("", [&] { return WrittenParts(settings); });
 }
 
 Status WriteRagdoll(const std::string& file, const RagdollSettings& settings) {
+    const TextFloats floats;
     return WithErrors("cannot write " + file, [&]() -> Status {
         const Result<Json> document = RagdollToJson(settings);
         if (!document) return document.GetError();

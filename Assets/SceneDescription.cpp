@@ -1,5 +1,6 @@
 #include <Fulcrum/Assets/SceneDescription.h>
 
+#include <Fulcrum/Assets/TextFloats.h>
 #include <Fulcrum/Physics/Files/ErrorBoundary.h>
 
 namespace fulcrum {
@@ -65,6 +66,7 @@ private:
 }  // namespace
 
 Result<SceneIds> AddScene(PhysicsSystem& system, const SceneDescription& scene) {
+    const TextFloats floats;
     SceneBuilder builder(system, scene);
     const Status run = WithErrors("", [&]() -> Status {
         if (MaybeError e = builder.Run()) return *e;

@@ -4,6 +4,7 @@
 #include <Fulcrum/Assets/Json/RagdollParts.h>
 #include <Fulcrum/Assets/Json/ShapeJson.h>
 #include <Fulcrum/Assets/RagdollJson.h>
+#include <Fulcrum/Assets/TextFloats.h>
 #include <Fulcrum/Physics/Files/ErrorBoundary.h>
 #include <Fulcrum/Physics/Files/WholeFile.h>
 
@@ -321,6 +322,7 @@ std::string Text(const Json& scene) {
 }  // namespace
 
 Result<SceneDescription> SceneFromJson(std::string_view text, const std::filesystem::path& folder) {
+    const TextFloats floats;
     return WithErrors("the document", [&]() -> Result<SceneDescription> {
         if (const MaybeError e = CheckLimitsOfJson(text)) return Error{e->code, "the document: " + e->message};
         const Json node = Json::parse(text);
@@ -329,6 +331,7 @@ Result<SceneDescription> SceneFromJson(std::string_view text, const std::filesys
 }
 
 Result<SceneDescription> SceneFromCbor(std::string_view bytes, const std::filesystem::path& folder) {
+    const TextFloats floats;
     return WithErrors("the document", [&]() -> Result<SceneDescription> {
         if (const MaybeError e = CheckLimitsOfCbor(bytes)) return Error{e->code, "the document: " + e->message};
         const Json node = Json::from_cbor(bytes, true, false);
@@ -338,6 +341,7 @@ Result<SceneDescription> SceneFromCbor(std::string_view bytes, const std::filesy
 }
 
 Result<std::string> SceneToJson(const SceneDescription& scene) {
+    const TextFloats floats;
     return WithErrors("", [&]() -> Result<std::string> {
         const Result<Json> node = SceneWriter(scene).Write();
         if (!node) return node.GetError();
@@ -346,6 +350,7 @@ Result<std::string> SceneToJson(const SceneDescription& scene) {
 }
 
 Result<SceneDescription> ReadScene(const std::filesystem::path& file) {
+    const TextFloats floats;
     return WithErrors(file.string(), [&]() -> Result<SceneDescription> {
         const Result<std::string> read = ReadWholeFile(file);
         if (!read) return read.GetError();
@@ -360,6 +365,7 @@ Result<SceneDescription> ReadScene(const std::filesystem::path& file) {
 }
 
 Status WriteScene(const std::filesystem::path& file, const SceneDescription& scene) {
+    const TextFloats floats;
     return WithErrors("cannot write " + file.string(), [&]() -> Status {
         const Result<Json> node = SceneWriter(scene).Write();
         if (!node) return node.GetError();

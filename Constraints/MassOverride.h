@@ -2,6 +2,8 @@
 // ContactListener.h), applied where its rows are set up; plain data.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 namespace fulcrum {
 
 struct MassOverride {

@@ -2,6 +2,8 @@
 // implementation.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #include <cstdint>
 #include <type_traits>
 #include <utility>

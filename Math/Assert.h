@@ -2,6 +2,8 @@
 // Arguments of callers are not checked with these: invalid ones are reported by a Result.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #ifdef FULCRUM_ASSERTIONS
 #include <cstdio>
 #include <cstdlib>

@@ -2,6 +2,8 @@
 // assertions, which compile several times faster without it.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #if defined(FULCRUM_ASSERTIONS)
 #define FULCRUM_FORCE_INLINE inline
 #define FULCRUM_FORCE_INLINE_LAMBDA

@@ -2,6 +2,8 @@
 // compile.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #include <cstddef>
 #include <memory>
 #include <new>

@@ -2,6 +2,8 @@
 // is gone when the settings are used, are kept.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <initializer_list>

@@ -2,6 +2,8 @@
 // standard error, or to a handler of the program. For all worlds, from any thread.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #include <cstdint>
 #include <cstdio>
 

@@ -4,6 +4,8 @@
 // whoever reads, changes or steps a world makes the world's resource current (WorldLock::Scope).
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #include <cstddef>
 #include <limits>
 #include <new>

@@ -6,6 +6,8 @@
 // assignments (Eigen::Vector3f e = v), wherever Eigen is included.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #include <cstdlib>
 #include <iosfwd>
 #include <type_traits>

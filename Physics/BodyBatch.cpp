@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/BodyBatch.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/Validation.h>
 
@@ -17,6 +18,7 @@ Error InList(const char* list, size_t index, const Error& error) {
 }
 
 Result<BodyBatch> BodyBatch::Prepare(std::vector<BodySettings> bodies, std::vector<Joint> joints) {
+    const DefaultFloats floats;
     for (size_t i = 0; i < bodies.size(); ++i)
         if (MaybeError error = Check(bodies[i])) return InList("bodies", i, *error);
     // Whether a body of the world exists and is dynamic is known when the batch is added.

@@ -1,5 +1,6 @@
 // Functions of BodyInterface that change existing bodies: motion type, mass, damping and limits, collision filters.
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
@@ -315,6 +316,7 @@ Status BodyInterface::SetContinuous(BodyId id, ContinuousCollision continuous) {
 }
 
 Status BodyInterface::SetPenetrationTarget(BodyId id, float target) {
+    const DefaultFloats floats;
     if (MaybeError error = CheckTarget("penetrationTarget", target)) return *error;
     const WorldChange<&BodyInterface::SetPenetrationTarget> change(world_, id, target);
     if (change.Refusal()) return *change.Refusal();

@@ -1,6 +1,7 @@
 // Snapshots of some bodies. PhysicsSystem::RestoreBodies does what a user could do with SetPose etc., except that poses
 // are bit-exact and the state of joints is restored.
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Physics/Snapshots/SnapshotElements.h>
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
@@ -137,6 +138,7 @@ void Complete(BodyStore& bodies, const SavedBody& saved) {
 }  // namespace
 
 Status PhysicsSystem::SaveBodies(std::span<const BodyId> bodies, std::vector<std::byte>& bytes) const {
+    const DefaultFloats floats;
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
     for (const BodyId id : bodies)

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyReading.h>
@@ -153,7 +154,7 @@ JointId JointInterface::Add(const JointSettings& settings, std::unique_ptr<Joint
     return world_.joints.IdOf(index);
 }
 
-template <class Settings>
+template <SettingsOfAKindOfJoint Settings>
 Result<JointId> JointInterface::Create(const Settings& settings) {
     const WorldChange<&JointInterface::Create<Settings>> change(world_, settings);
     if (change.Refusal()) return *change.Refusal();
@@ -173,6 +174,7 @@ FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 
 Result<JointId> JointInterface::CreateTarget(const TargetJointSettings& s) {
+    const DefaultFloats floats;
     if (MaybeError error = FirstOf(CheckPosition("anchor", s.anchor), CheckPosition("target", s.target),
                                    CheckSpring("spring", s.spring)))
         return *error;
@@ -302,6 +304,7 @@ Status JointInterface::SetTargetOrientation(JointId id, const Quaternion& target
 }
 
 Status JointInterface::SetErrorTarget(JointId id, float target) {
+    const DefaultFloats floats;
     if (MaybeError error = CheckTarget("errorTarget", target)) return *error;
     const WorldChange<&JointInterface::SetErrorTarget> change(world_, id, target);
     if (change.Refusal()) return *change.Refusal();
@@ -344,6 +347,7 @@ Status JointInterface::SetMassOverride(JointId id, const MassOverride& massOverr
 const AxisControl* JointInterface::GetControl(JointId id, JointAxis axis) const { return ControlOf(id, axis); }
 
 double JointInterface::GetCoordinate(JointId id, JointAxis axis) const {
+    const DefaultFloats floats;
     return Exists(id) && axis <= JointAxis::AngularZ
                ? world_.joints.types[id.index]->Coordinate(axis, PoseOf(world_, id.index))
                : 0.0;
@@ -387,6 +391,7 @@ JointError ErrorOfRows(const JointType& type, JointPose pose) {
 }  // namespace
 
 JointError JointInterface::GetError(JointId id) const {
+    const DefaultFloats floats;
     if (!Exists(id)) return {};
     const JointPose pose = PoseOf(world_, id.index);
     const JointType& type = *world_.joints.types[id.index];
@@ -410,6 +415,7 @@ Vector3 JointInterface::GetLockForce(JointId id) const { return Read(world_, id,
 Vector3 JointInterface::GetLockTorque(JointId id) const { return Read(world_, id, &JointRecord::lockTorque); }
 
 JointAxisForces JointInterface::GetAxisForces(JointId id, JointAxis axis) const {
+    const DefaultFloats floats;
     if (!ControlOf(id, axis)) return {};
     const JointType& type = *world_.joints.types[id.index];
     const auto forceOf = [&](uint32_t slot) { return type.forces[type.FirstSlot(axis) + slot]; };
@@ -418,11 +424,13 @@ JointAxisForces JointInterface::GetAxisForces(JointId id, JointAxis axis) const 
 }
 
 Pose JointInterface::GetFrameA(JointId id) const {
+    const DefaultFloats floats;
     if (!Exists(id)) return {};
     const JointRecord& record = world_.joints.records[id.index];
     return WorldFrameOf(world_, world_.joints.joints[id.index].body[0], Read(record.anchorA, record.frameA));
 }
 Pose JointInterface::GetFrameB(JointId id) const {
+    const DefaultFloats floats;
     if (!Exists(id)) return {};
     const JointRecord& record = world_.joints.records[id.index];
     return WorldFrameOf(world_, world_.joints.joints[id.index].body[1], Read(record.anchorB, record.frameB));

@@ -39,7 +39,7 @@ public:
     // Settings: those of any kind in Joints/JointKinds.h. The bodies may be in any pose: joints with errors are pulled
     // together. Errors name the field: UnknownId (a body), Unsupported (the same body twice, no dynamic one),
     // NonFinite, NonPositive, Negative, OutOfRange, Unnormalized. On error nothing is created.
-    template <class Settings>
+    template <SettingsOfAKindOfJoint Settings>
     Result<JointId> Create(const Settings& settings);
     Result<JointId> CreateTarget(const TargetJointSettings& settings);
     // Moves A's anchor of a joint whose body A is the world to a position, m; wakes the bodies, unless it is there

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/PhysicsSystem.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
 #include <Fulcrum/Physics/Stages/PairView.h>
@@ -23,6 +24,7 @@ namespace fulcrum {
 
 Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSettings& settings, JobSystem* jobs,
                                                              MemoryResource* memory) {
+    const DefaultFloats floats;
     if (MaybeError error = Check(settings)) return *error;
     const MemoryScope scope(memory);
     auto world = std::make_unique<WorldState>(memory);
@@ -45,6 +47,7 @@ PhysicsSystem::PhysicsSystem(std::unique_ptr<WorldState> world, std::unique_ptr<
 PhysicsSystem::~PhysicsSystem() = default;
 
 Status PhysicsSystem::Update(double dt) {
+    const DefaultFloats floats;
     if (MaybeError error = CheckRange("dt", dt, 0, 1)) return *error;
     WorldState& world = *world_;
     const WorldChange<&PhysicsSystem::Update> change(world, dt);
@@ -91,6 +94,7 @@ const SystemSettings& PhysicsSystem::Settings() const {
 }
 
 Status PhysicsSystem::SetSettings(const SystemSettings& settings) {
+    const DefaultFloats floats;
     if (MaybeError error = Check(settings)) return *error;
     const WorldChange<&PhysicsSystem::SetSettings> change(*world_, settings);
     if (change.Refusal()) return *change.Refusal();
@@ -153,6 +157,7 @@ WorldLock::Exclusive PhysicsSystem::HoldForChanges() {
 }
 
 Status PhysicsSystem::SaveSnapshot(std::vector<std::byte>& bytes) const {
+    const DefaultFloats floats;
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
     HeedShapeEdits(*world_);
@@ -166,6 +171,7 @@ Status PhysicsSystem::RestoreSnapshot(std::span<const std::byte> bytes, const Sn
 }
 
 uint64_t PhysicsSystem::HashState() const {
+    const DefaultFloats floats;
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return ReportMisuse(*alone.Refusal()), 0;
     HeedShapeEdits(*world_);
@@ -187,12 +193,14 @@ static void VisitContact(const WorldState& world, uint32_t index, FunctionRef<vo
 }
 
 void PhysicsSystem::VisitContacts(FunctionRef<void(const ContactView&)> visit) const {
+    const DefaultFloats floats;
     if (!IsReadable(*world_)) return;
     const WorldState& world = *world_;
     world.pairs.active.Visit([&](uint32_t index) { VisitContact(world, index, visit); });
 }
 
 void PhysicsSystem::VisitContactsOf(BodyId body, FunctionRef<void(const ContactView&)> visit) const {
+    const DefaultFloats floats;
     const WorldState& world = *world_;
     if (!IsReadable(world) || !world.bodies.Find(body)) return;
     VisitPairsOf(world.bodies, world.colliders, world.pairs, {&body.index, 1}, [&](uint32_t first) {
@@ -202,6 +210,7 @@ void PhysicsSystem::VisitContactsOf(BodyId body, FunctionRef<void(const ContactV
 }
 
 void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visit) const {
+    const DefaultFloats floats;
     if (!IsReadable(*world_)) return;
     const BodyStore& bodies = world_->bodies;
     const WorldLock::Scope scope(world_->lock, WorldLock::OfThisThread(world_->lock));  // for its memory
@@ -231,11 +240,13 @@ void PhysicsSystem::VisitIslands(FunctionRef<void(BodyId, uint32_t island)> visi
 }
 
 void PhysicsSystem::VisitEfforts(FunctionRef<void(const IslandEffortReport&)> visit) const {
+    const DefaultFloats floats;
     if (IsReadable(*world_) && step_->report.islandsWithMoreEffort > 0)
         fulcrum::VisitEfforts(world_->settings.solver, world_->bodies, step_->solver, visit);
 }
 
 double PhysicsSystem::GetEnergy() const {
+    const DefaultFloats floats;
     if (!IsReadable(*world_)) return 0;
     double energy = 0;
     const BodyStore& bodies = world_->bodies;
@@ -251,6 +262,7 @@ double PhysicsSystem::GetEnergy() const {
 }
 
 uint64_t PhysicsSystem::HashPoses() const {
+    const DefaultFloats floats;
     uint64_t hash = 0xCBF29CE484222325ull;  // FNV-1a, 64 bits
     VisitBodies([&](BodyId id) {
         const Pose pose = bodies_.GetPose(id);

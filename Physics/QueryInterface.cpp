@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Queries/Bearings.h>
 #include <Fulcrum/Collision/Queries/Distance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Queries/RaySearch.h>
 #include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/Filters.h>
@@ -146,6 +147,7 @@ void QueryInterface::VisitRay(const Ray& ray, FunctionRef<float(const WorldRayHi
 
 void QueryInterface::CastRayAll(const Ray& ray, std::vector<WorldRayHit>& hits, const RayCastSettings& settings,
                                 const QueryFilter& filter) const {
+    const DefaultFloats floats;
     hits.clear();
     VisitRay(
         ray, [&](const WorldRayHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
@@ -210,6 +212,7 @@ bool QueryInterface::IsHit(const MovingShape& shape, const ShapeCastSettings& se
 
 void QueryInterface::CastShapeAll(const MovingShape& shape, std::vector<WorldShapeHit>& hits,
                                   const ShapeCastSettings& settings, const QueryFilter& filter) const {
+    const DefaultFloats floats;
     hits.clear();
     VisitShape(
         shape, [&](const WorldShapeHit& hit) { return hits.push_back(hit), settings.maxFraction; }, settings, filter);
@@ -253,6 +256,7 @@ void QueryInterface::FindOverlaps(const PlacedShape& shape, std::vector<OverlapH
 
 void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>& hits,
                                   const QueryFilter& filter) const {
+    const DefaultFloats floats;
     hits.clear();
     if (!IsFinite(point)) return;
     const QueryScope scope(world_);
@@ -272,6 +276,7 @@ void QueryInterface::FindBodiesAt(const Position& point, std::vector<OverlapHit>
 
 bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, WorldClosest& closest,
                                  const QueryFilter& filter) const {
+    const DefaultFloats floats;
     const QueryScope scope(world_);
     if (!scope || !IsGiven(shape.shape)) return false;
     const Pose pose = CenterPoseOf(*shape.shape, shape.pose);
@@ -316,6 +321,7 @@ bool QueryInterface::FindClosest(const PlacedShape& shape, float maxDistance, Wo
 
 bool QueryInterface::FindClosest(const Position& point, float maxDistance, WorldClosest& closest,
                                  const QueryFilter& filter) const {
+    const DefaultFloats floats;
     const PointCore core;
     return FindClosest(PlacedShape{&core, {point, {}}}, maxDistance, closest, filter);
 }
@@ -324,6 +330,7 @@ bool QueryInterface::FindClosest(const Position& point, float maxDistance, World
 
 void QueryInterface::FindInBox(const Position& lower, const Position& upper, std::vector<OverlapHit>& hits,
                                const QueryFilter& filter) const {
+    const DefaultFloats floats;
     hits.clear();
     if (!IsFinite(lower) || !IsFinite(upper)) return;
     const QueryScope scope(world_);
@@ -345,6 +352,7 @@ bool QueryInterface::MayCollide(BodyId a, BodyId b) const {
 
 void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, const Vector3& displacement,
                                  std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+    const DefaultFloats floats;
     hits.clear();
     if (!IsFinite(lower) || !IsFinite(upper) || !IsFinite(displacement) || !lower.isAtMost(upper)) return;
     const QueryScope scope(world_);
@@ -359,6 +367,7 @@ void QueryInterface::FindOnSweep(const Position& lower, const Position& upper, c
 }
 
 void QueryInterface::FindOnRay(const Ray& ray, std::vector<OverlapHit>& hits, const QueryFilter& filter) const {
+    const DefaultFloats floats;
     FindOnSweep(ray.origin, ray.origin, ray.displacement, hits, filter);
 }
 

@@ -29,7 +29,8 @@ public:
     explicit QueryInterface(WorldState& world) : world_(world) {}
 
     // Locks the world for reading as long as the object lives; queries of this thread are cheaper meanwhile. Changes by
-    // other threads wait, and so does a step, at the latest at its end; changes by this one return an error.
+    // other threads wait, and so does a step, at the latest at its end; changes by this one return an error. Holds of a
+    // thread may end in any order, but must end on it.
     [[nodiscard]] WorldLock::Shared Hold(HoldFor purpose = HoldFor::Everything) const;
 
     // Rays, see RayCast.h. Ties are resolved by the lowest body, child, triangle.

@@ -1,6 +1,7 @@
 // BodyInterface::AddRadialImpulse: the bodies within a ball about the center, each at its closest point.
 #include <Fulcrum/Collision/Queries/CoreShapes.h>
 #include <Fulcrum/Collision/Queries/Distance.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/BodyInterface.h>
 #include <Fulcrum/Physics/QueryInterface.h>
 #include <Fulcrum/Physics/Validation.h>
@@ -36,6 +37,7 @@ std::optional<Closest> ClosestOf(const WorldState& world, uint32_t body, const R
 }  // namespace
 
 Result<uint32_t> BodyInterface::AddRadialImpulse(const RadialImpulse& settings, const QueryFilter& filter) {
+    const DefaultFloats floats;
     if (MaybeError e = FirstOf(CheckPosition("center", settings.center), CheckPositive("radius", settings.radius),
                                CheckRange("radius", settings.radius, 0, 1e18),
                                CheckRange("impulse", settings.impulse, -1e30, 1e30),

@@ -1,8 +1,11 @@
 #include <Fulcrum/Physics/StepEvents.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
+
 namespace fulcrum {
 
 float ContactEvent::NormalImpulse() const {
+    const DefaultFloats floats;
     float sum = 0;
     for (const Manifold& manifold : manifolds)
         for (const Point& point : manifold.Points()) sum += point.impulse;
@@ -10,6 +13,7 @@ float ContactEvent::NormalImpulse() const {
 }
 
 Vector3 ContactEvent::Impulse() const {
+    const DefaultFloats floats;
     Vector3 sum = Vector3::Zero();
     for (const Manifold& manifold : manifolds) {
         sum += manifold.frictionImpulse;

@@ -3,6 +3,8 @@
 // program.
 #pragma once
 
+#include <Fulcrum/Math/NeedsCpp20.h>
+
 #include <cstdint>
 
 namespace fulcrum {

@@ -1,6 +1,7 @@
 #include <Fulcrum/Assets/Meshes/MeshFile.h>
 
 #include <Fulcrum/Assets/Meshes/ChildProcess.h>
+#include <Fulcrum/Assets/TextFloats.h>
 #include <Fulcrum/Physics/Files/ErrorBoundary.h>
 
 #include <Eigen/LU>
@@ -209,6 +210,7 @@ Error FailureOf(ProcessEnd end, const std::string& path) {
 MeshBox::MeshBox() : lowest(Position::Constant(std::numeric_limits<double>::infinity())), highest(-lowest) {}
 
 MeshBox BoundsOf(const std::vector<MeshPart>& parts) {
+    const TextFloats floats;
     MeshBox box;
     for (const MeshPart& part : parts)
         for (const Position& point : part.points)
@@ -217,6 +219,7 @@ MeshBox BoundsOf(const std::vector<MeshPart>& parts) {
 }
 
 Result<std::vector<MeshPart>> ReadMeshParts(const std::filesystem::path& path) {
+    const TextFloats floats;
     constexpr uint64_t kMostMemory = uint64_t{4} << 30, kMostParts = uint64_t{2} << 30;  // bytes
     constexpr uint64_t kBytesPerSecond = 1'000'000;  // some tenths of what assimp reads of the slowest format
     std::error_code ignored;

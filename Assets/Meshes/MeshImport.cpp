@@ -1,5 +1,6 @@
 #include <Fulcrum/Assets/Meshes/MeshImport.h>
 
+#include <Fulcrum/Assets/TextFloats.h>
 #include <Fulcrum/Collision/Shapes/Compound.h>
 #include <Fulcrum/Collision/Shapes/ConvexHull.h>
 #include <Fulcrum/Assets/Meshes/MeshFile.h>
@@ -108,6 +109,7 @@ std::vector<std::string> Repairs(const MeshReport& report) {
 }  // namespace
 
 Result<ImportedMesh> ImportMesh(const std::filesystem::path& path, const MeshImportSettings& settings) {
+    const TextFloats floats;
     if (settings.scale && !(*settings.scale > 0 && std::isfinite(*settings.scale)))
         return Error{ErrorCode::NonPositive,
                      "scale must be finite and above 0, not " + std::to_string(*settings.scale)};
@@ -153,6 +155,7 @@ Result<ImportedMesh> ImportMesh(const std::filesystem::path& path, const MeshImp
 }
 
 Result<ImportedShape> ImportShape(const std::filesystem::path& path, double size) {
+    const TextFloats floats;
     Result<std::vector<MeshPart>> read = ReadMeshParts(path);
     if (!read) return read.GetError();
     std::vector<MeshPart> parts = std::move(read.Value());

@@ -2,6 +2,7 @@
 #include <Fulcrum/Collision/NarrowPhase/BoxPart.h>
 #include <Fulcrum/Collision/NarrowPhase/PairFunctions.h>
 #include <Fulcrum/Collision/NarrowPhase/PlaneContact.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 namespace fulcrum {
 
@@ -116,6 +117,7 @@ bool CollidePart(PairFunction function, const PairQuery& query, Manifold& manifo
 
 void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters) {
+    const DefaultFloats floats;
     const PairFunction function =
         settings.method == NarrowPhaseMethod::Libccd ? CollideLibccd : kPairTable.Of(a.Type(), b.Type());
     const PairQuery query{a, b, bInA, settings, cache, counters};
@@ -124,6 +126,7 @@ void Collide(const ConvexShape& a, const ConvexShape& b, const RelativePose& bIn
 
 void Collide(const ConvexShape& a, const Plane& b, const RelativePose& bInA, const CollideSettings& settings,
              PairCache& cache, Manifold& manifold, CollideCounters& counters) {
+    const DefaultFloats floats;
     if (settings.method == NarrowPhaseMethod::Libccd)
         CollideWithPlaneByLibccd(b, a, bInA, settings, cache, manifold, counters);
     else CollideWithPlane(b, a, bInA, settings, manifold);

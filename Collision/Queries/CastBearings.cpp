@@ -5,12 +5,14 @@
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Queries/ShapeCast.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 
 namespace fulcrum {
 
 float ShapeCaster::ReachOfBearings(const ShapeCastSettings& settings) const {
+    const DefaultFloats floats;
     return settings.separation + FlushHeight(shape_.OuterRadius());
 }
 
@@ -43,6 +45,7 @@ void ShapeCaster::AddBearing(const ShapeHit& touched, Bearings& bearings) const 
 
 void ShapeCaster::FindBearings(const Shape& other, const Pose& pose, const ShapeCastSettings& settings,
                                Bearings& bearings) const {
+    const DefaultFloats floats;
     const Position between = motion_.pose.position - pose.position;
     const bool isOtherTurning = !motion_.turnOfOther.isZero(0);
     if (!isValid_ || !settings.IsValid() || isOtherTurning || !IsWithinReach(between)) return;

@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Queries/ConvexDistance.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <limits>
@@ -123,6 +124,7 @@ bool IsUsable(const RelativePose& pose, float maxDistance) {
 
 bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA, float maxDistance,
                        ClosestPoints& result, NarrowPhaseMethod method) {
+    const DefaultFloats floats;
     if (!IsUsable(bInA, maxDistance)) return false;
     if (a.Type() == ShapeType::Plane) return ClosestToPlane(static_cast<const Plane&>(a), b, bInA, maxDistance, result);
     if (b.Type() == ShapeType::Plane) {
@@ -141,10 +143,12 @@ bool FindClosestPoints(const Shape& a, const Shape& b, const RelativePose& bInA,
 
 bool FindClosestPoint(const Shape& shape, const Vector3& point, float maxDistance, ClosestPoints& result,
                       NarrowPhaseMethod method) {
+    const DefaultFloats floats;
     return FindClosestPoints(shape, PointCore(), {point, {}}, maxDistance, result, method);
 }
 
 bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA, NarrowPhaseMethod method) {
+    const DefaultFloats floats;
     if (!IsUsable(bInA, 0)) return false;
     ClosestPoints unused;
     if (a.Type() == ShapeType::Plane || b.Type() == ShapeType::Plane) return FindClosestPoints(a, b, bInA, 0, unused);
@@ -157,6 +161,7 @@ bool Overlap(const Shape& a, const Shape& b, const RelativePose& bInA, NarrowPha
 }
 
 bool Contains(const Shape& shape, const Vector3& point, NarrowPhaseMethod method) {
+    const DefaultFloats floats;
     return !shape.IsSurface() && Overlap(shape, PointCore(), {point, {}}, method);
 }
 

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Queries/ConvexRay.h>
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <bit>
@@ -31,6 +32,7 @@ TreeRay InFrameOfTree(const Ray& ray, double length, const CompoundShape& compou
 }  // namespace
 
 RayCaster::RayCaster(const Ray& ray) : ray_(ray) {
+    const DefaultFloats floats;
     if (!IsFinite(ray.origin) || !IsFinite(ray.displacement)) return;
     const Position displacement = ray.displacement.cast<double>();
     const double square = Dot<double>(displacement, displacement);
@@ -132,6 +134,7 @@ bool RayCaster::CastSurface(const SurfaceShape& shape, const Pose& pose, const R
 
 uint32_t RayCaster::CastClosest(const RayCaster* casters, uint32_t which, const SurfaceShape& shape, const Pose& pose,
                                 const RayCastSettings& settings, const float* limits, RayHit* hits) {
+    const DefaultFloats floats;
     SurfaceRay rays[kMostRays];
     SurfaceHit found[kMostRays];
     float left[kMostRays];
@@ -157,6 +160,7 @@ uint32_t RayCaster::CastClosest(const RayCaster* casters, uint32_t which, const 
 
 bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastSettings& settings, float limit,
                             RayHit& hit) const {
+    const DefaultFloats floats;
     if (!IsValid()) return false;
     if (shape.IsConvex()) return CastConvex(static_cast<const ConvexShape&>(shape), pose, settings, limit, hit);
     if (shape.Type() == ShapeType::Plane) return CastPlane(shape, pose, settings, hit);
@@ -181,6 +185,7 @@ bool RayCaster::CastClosest(const Shape& shape, const Pose& pose, const RayCastS
 }
 
 bool RayCaster::IsHit(const Shape& shape, const Pose& pose, const RayCastSettings& settings) const {
+    const DefaultFloats floats;
     if (IsValid() && shape.IsSurface()) {
         const SurfaceShape& surface = static_cast<const SurfaceShape&>(shape);
         double skipped = 0;
@@ -198,6 +203,7 @@ bool RayCaster::IsHit(const Shape& shape, const Pose& pose, const RayCastSetting
 
 bool RayCaster::Search(const Shape& shape, const Pose& pose, const RayCastSettings& settings, void* context,
                        HitFunction found) const {
+    const DefaultFloats floats;
     if (!IsValid()) return true;
     RayHit hit;
     if (shape.IsConvex() || shape.Type() == ShapeType::Plane)

@@ -7,6 +7,7 @@
 #include <Fulcrum/Collision/Queries/CoreCast.h>
 #include <Fulcrum/Collision/Queries/Pieces.h>
 #include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,11 +39,14 @@ bool IsWithin(const CoreCastResult& cast, const ShapeCastSettings& settings) {
 }  // namespace
 
 bool ShapeCastSettings::IsValid() const {
+    const DefaultFloats floats;
     return maxFraction >= 0 && separation >= 0 && tolerance >= 0 && IsWithinReach(Position(separation, tolerance, 0));
 }
 
 ShapeCaster::ShapeCaster(const ConvexShape& shape, const ShapeMotion& motion, NarrowPhaseMethod method)
-    : shape_(shape), motion_(motion), bounds_(BoundsOfTurning(shape, motion)), method_(method) {
+    : shape_(shape), motion_(motion), method_(method) {
+    const DefaultFloats floats;
+    bounds_ = BoundsOfTurning(shape, motion);
     isValid_ = IsFinite(motion.pose.position) && IsRotation(motion.pose.rotation) &&
                IsWithinReach(motion.displacement.cast<double>()) && IsWithinReach(motion.turn.cast<double>()) &&
                IsWithinReach(motion.turnOfOther.cast<double>()) && IsFinite(bounds_.lower) && IsFinite(bounds_.upper);
@@ -216,6 +220,7 @@ void ShapeCaster::SearchSurface(const SurfaceShape& surface, const Pose& pose, S
 
 void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings settings, void* context,
                          HitFunction found) const {
+    const DefaultFloats floats;
     if (!isValid_ || !settings.IsValid() || !IsWithinReach(motion_.pose.position - pose.position)) return;
     if (settings.ignoreSeparating && !bearings_) {
         Bearings bearings;
@@ -254,6 +259,7 @@ void ShapeCaster::Search(const Shape& other, const Pose& pose, ShapeCastSettings
 
 bool ShapeCaster::CastClosest(const Shape& other, const Pose& pose, const ShapeCastSettings& settings,
                               ShapeHit& hit) const {
+    const DefaultFloats floats;
     struct Best {
         ShapeHit& hit;
         bool found = false;

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 
@@ -32,6 +33,7 @@ static void AddChildrenOf(const CompoundShape& compound, const RelativePose& pos
 
 Result<std::shared_ptr<const Compound>> Compound::Create(std::span<const ChildSettings> children,
                                                          const Vector3& centerOffset) {
+    const DefaultFloats floats;
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};
 
     std::vector<SolidMass> solids;

@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>
 
 #include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <cmath>
 
@@ -58,6 +59,7 @@ Bounds CompoundShape::BoundsOf(const Child& child) {
 }
 
 CompoundShape::ChildSettings CompoundShape::SettingsOf(const Child& child) const {
+    const DefaultFloats floats;
     // From the center frames to the users'.
     const Vector3 own = Rotate(child.pose.rotation, child.shape->Mass().centerOfMass);
     return {.shape = child.shape,
@@ -67,6 +69,7 @@ CompoundShape::ChildSettings CompoundShape::SettingsOf(const Child& child) const
 }
 
 std::vector<CompoundShape::ChildSettings> CompoundShape::Settings() const {
+    const DefaultFloats floats;
     std::vector<ChildSettings> settings;
     for (const Child& child : children_)
         if (child.shape) settings.push_back(SettingsOf(child));

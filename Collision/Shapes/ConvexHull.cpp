@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Wide.h>
 
 #include <algorithm>
@@ -170,6 +171,7 @@ ShapeResult ShapeFileAccess::MakeHull(const HullMesh& mesh, const MassProperties
 
 Result<std::shared_ptr<const ConvexHull>> ConvexHull::Create(std::span<const Vector3> points,
                                                              const ConvexHullSettings& settings) {
+    const DefaultFloats floats;
     if (const Status status = CheckInput(points, settings); !status) return status.GetError();
     std::vector<Position> positions;
     positions.reserve(points.size());

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/Shapes/SampledSurface.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,6 +58,7 @@ Status CheckSupports(const ConvexShape& shape, const SampledSurface& surface) {
 }  // namespace
 
 Status CustomConvex::Complete() {
+    const DefaultFloats floats;
     if (const Status size = CheckSizeOrZero("convexRadius", convexRadius_); !size) return size.GetError();
     mass_.centerOfMass = Vector3::Zero();
     if (const Status status = CheckSupports(*this, SampleSurface(*this, 6)); !status) return status.GetError();

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/SurfaceLimits.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Wide.h>
 
 #include <algorithm>
@@ -117,6 +118,7 @@ void HeightField::Finish() {
 }
 
 Result<std::shared_ptr<HeightField>> HeightField::Create(const HeightFieldSettings& settings) {
+    const DefaultFloats floats;
     HeightFieldSettings s = settings;
     if (const Status status = CheckGrid(s); !status) return status.GetError();
     const size_t samples = size_t{s.sampleCountX} * s.sampleCountZ;
@@ -262,6 +264,7 @@ void HeightField::LogEdit(const Bounds& changed) {
 
 Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
                                        std::span<const float> heights) {
+    const DefaultFloats floats;
     if (const Status status = CheckRectangle(x0, z0, countX, countZ, heights.size(), sampleCountX_, sampleCountZ_);
         !status)
         return status.GetError();
@@ -291,6 +294,7 @@ Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX
 
 Result<Bounds> HeightField::SetCells(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
                                      std::span<const uint8_t> cells) {
+    const DefaultFloats floats;
     if (const Status status = CheckRectangle(x0, z0, countX, countZ, cells.size(), CellCountX(), CellCountZ()); !status)
         return status.GetError();
     if (const Status status = CheckCells(cells); !status) return status.GetError();

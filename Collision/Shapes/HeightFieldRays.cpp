@@ -2,6 +2,7 @@
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 
@@ -155,6 +156,7 @@ Vector3 HeightField::NormalOf(uint32_t id) const {
 }
 
 bool HeightField::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction) const {
+    const DefaultFloats floats;
     ClosestHit best{maxFraction};
     Traverse(ray, maxFraction,
              [&](uint32_t id, float fraction, bool isBackFace) { return best.Take(id, fraction, isBackFace); });
@@ -164,6 +166,7 @@ bool HeightField::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFract
 }
 
 bool HeightField::IsHit(const SurfaceRay& ray, float maxFraction) const {
+    const DefaultFloats floats;
     bool isHit = false;
     Traverse(ray, maxFraction, [&](uint32_t, float, bool) {
         isHit = true;
@@ -173,6 +176,7 @@ bool HeightField::IsHit(const SurfaceRay& ray, float maxFraction) const {
 }
 
 void HeightField::SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const {
+    const DefaultFloats floats;
     Traverse(ray, maxFraction, [&](uint32_t id, float fraction, bool isBackFace) {
         const ClosestHit hit{fraction, id, isBackFace};
         return found(context, hit.ToHit(NormalOf(id))) ? maxFraction : -1.0f;

@@ -2,6 +2,7 @@
 #include <Fulcrum/Collision/Shapes/BoxDistance.h>
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <bit>
@@ -87,6 +88,7 @@ inline void HeightField::FillView(uint32_t id, TriangleView& view) const {
 }
 
 TriangleView HeightField::GetTriangle(uint32_t id) const {
+    const DefaultFloats floats;
     TriangleView view;
     FillView(id, view);
     return view;

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <cmath>
@@ -76,6 +77,7 @@ void JacobiRotate(double& app, double& aqq, double& apq, double& arp, double& ar
 }  // namespace
 
 void AddOuterProduct(Covariance& c, const Position& v, double weight) {
+    const DefaultFloats floats;
     c.xx += weight * v.x() * v.x();
     c.yy += weight * v.y() * v.y();
     c.zz += weight * v.z() * v.z();
@@ -85,6 +87,7 @@ void AddOuterProduct(Covariance& c, const Position& v, double weight) {
 }
 
 Sym3<double> InertiaOf(const Covariance& c) {
+    const DefaultFloats floats;
     Sym3<double> inertia;
     inertia.xx = c.yy + c.zz;
     inertia.yy = c.xx + c.zz;
@@ -97,6 +100,7 @@ Sym3<double> InertiaOf(const Covariance& c) {
 
 SolidMass PolyhedronMass(std::span<const Position> vertices, std::span<const PolygonRange> polygons,
                          std::span<const int> indices) {
+    const DefaultFloats floats;
     Position reference = Position::Zero();
     for (const Position& v : vertices) reference += v;
     reference *= 1.0 / static_cast<double>(vertices.size());
@@ -131,6 +135,7 @@ SolidMass PolyhedronMass(std::span<const Position> vertices, std::span<const Pol
 }
 
 SolidMass CombinedMass(std::span<const SolidMass> solids, std::span<const double> densities) {
+    const DefaultFloats floats;
     SolidMass whole;
     double mass = 0;
     Position moment = Position::Zero();
@@ -153,6 +158,7 @@ SolidMass CombinedMass(std::span<const SolidMass> solids, std::span<const double
 }
 
 SolidMass Transformed(const SolidMass& solid, const Quaternion& rotation, const Position& translation) {
+    const DefaultFloats floats;
     const Mat3<double> r = ToMatrix(ToDouble(rotation));
     SolidMass result;
     result.volume = solid.volume;
@@ -171,6 +177,7 @@ SolidMass Transformed(const SolidMass& solid, const Quaternion& rotation, const 
 }
 
 SolidMass ToSolidMass(const MassProperties& mass) {
+    const DefaultFloats floats;
     SolidMass solid;
     solid.volume = mass.volume;
     solid.center = mass.centerOfMass.cast<double>();
@@ -180,6 +187,7 @@ SolidMass ToSolidMass(const MassProperties& mass) {
 }
 
 PrincipalAxes Diagonalized(const Sym3<double>& tensor) {
+    const DefaultFloats floats;
     const double largest = std::max({std::fabs(tensor.xx), std::fabs(tensor.yy), std::fabs(tensor.zz)});
     const auto offDiagonal = [](const Sym3<double>& t) {
         return std::max({std::fabs(t.xy), std::fabs(t.xz), std::fabs(t.yz)});
@@ -198,6 +206,7 @@ PrincipalAxes Diagonalized(const Sym3<double>& tensor) {
 }
 
 Result<MassProperties> ToMassProperties(const SolidMass& solid) {
+    const DefaultFloats floats;
     const PrincipalAxes principal = Diagonalized(solid.inertia);
     MassProperties mass;
     mass.volume = static_cast<float>(solid.volume);

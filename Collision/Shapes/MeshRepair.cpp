@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/SurfaceLimits.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <bit>
@@ -130,6 +131,7 @@ Corners Canonical(const uint32_t* t) {
 }  // namespace
 
 bool HasArea(const Vector3& a, const Vector3& b, const Vector3& c, double weldDistance) {
+    const DefaultFloats floats;
     const Position p = a.cast<double>(), u = b.cast<double>() - p, v = c.cast<double>() - p, w = v - u;
     const Position cross = Cross(u, v);
     const double longest = std::sqrt(std::max({Dot(u, u), Dot(v, v), Dot(w, w)}));
@@ -138,6 +140,7 @@ bool HasArea(const Vector3& a, const Vector3& b, const Vector3& c, double weldDi
 
 Result<RepairedMesh> RepairMesh(std::span<const Vector3> vertices, std::span<const uint32_t> indices,
                                 float weldDistance, MeshReport& report) {
+    const DefaultFloats floats;
     report = {};
     if (const Status status = CheckInput(vertices, indices); !status) return status.GetError();
 

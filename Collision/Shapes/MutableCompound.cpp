@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <bit>
@@ -35,6 +36,7 @@ MutableCompound::MutableCompound(const MutableCompound&) = default;
 MutableCompound::~MutableCompound() = default;
 
 Result<std::shared_ptr<MutableCompound>> MutableCompound::Create(std::span<const ChildSettings> children) {
+    const DefaultFloats floats;
     if (children.empty()) return Error{ErrorCode::Degenerate, "a compound needs at least one child"};
     const std::shared_ptr<MutableCompound> compound(new MutableCompound);
     for (const ChildSettings& settings : children) {
@@ -95,12 +97,14 @@ Result<MutableCompound::Edit> MutableCompound::Plan(uint32_t index, Child child,
 }
 
 Result<MutableCompound::Edit> MutableCompound::PlanAdd(const ChildSettings& child, MassUpdate mass) const {
+    const DefaultFloats floats;
     const Result<Child> posed = Posed(child, "child");
     if (!posed) return posed.GetError();
     return Plan(free_.empty() ? static_cast<uint32_t>(children_.size()) : free_.back(), posed.Value(), mass);
 }
 
 Result<MutableCompound::Edit> MutableCompound::PlanSet(ChildId id, const ChildSettings& child, MassUpdate mass) const {
+    const DefaultFloats floats;
     if (const Status status = CheckId(id); !status) return status.GetError();
     const Result<Child> posed = Posed(child, "child");
     if (!posed) return posed.GetError();
@@ -109,6 +113,7 @@ Result<MutableCompound::Edit> MutableCompound::PlanSet(ChildId id, const ChildSe
 
 Result<MutableCompound::Edit> MutableCompound::PlanMove(ChildId id, const Vector3& position, const Quaternion& rotation,
                                                         MassUpdate mass) const {
+    const DefaultFloats floats;
     if (const Status status = CheckId(id); !status) return status.GetError();
     const Child& child = children_[id.index];
     return PlanSet(id, {.shape = child.shape, .position = position, .rotation = rotation, .density = child.density},
@@ -116,6 +121,7 @@ Result<MutableCompound::Edit> MutableCompound::PlanMove(ChildId id, const Vector
 }
 
 Result<MutableCompound::Edit> MutableCompound::PlanRemove(ChildId id, MassUpdate mass) const {
+    const DefaultFloats floats;
     if (const Status status = CheckId(id); !status) return status.GetError();
     if (count_ == 1) return Error{ErrorCode::Degenerate, "child is the last one: a compound needs at least one"};
     return Plan(id.index, {}, mass);
@@ -153,6 +159,7 @@ void MutableCompound::Reserve(const Edit& edit) {
 }
 
 ChildId MutableCompound::Commit(const Edit& edit) {
+    const DefaultFloats floats;
     Reserve(edit);
     const uint32_t index = edit.index;
     const bool isNew = index >= children_.size() || !children_[index].shape;
@@ -175,30 +182,35 @@ ChildId MutableCompound::Commit(const Edit& edit) {
 }
 
 Result<ChildId> MutableCompound::Add(const ChildSettings& child, MassUpdate mass) {
+    const DefaultFloats floats;
     const Result<Edit> edit = PlanAdd(child, mass);
     if (!edit) return edit.GetError();
     return Commit(edit.Value());
 }
 
 Status MutableCompound::Set(ChildId id, const ChildSettings& child, MassUpdate mass) {
+    const DefaultFloats floats;
     const Result<Edit> edit = PlanSet(id, child, mass);
     if (edit) Commit(edit.Value());
     return Forget(edit);
 }
 
 Status MutableCompound::Move(ChildId id, const Vector3& position, const Quaternion& rotation, MassUpdate mass) {
+    const DefaultFloats floats;
     const Result<Edit> edit = PlanMove(id, position, rotation, mass);
     if (edit) Commit(edit.Value());
     return Forget(edit);
 }
 
 Status MutableCompound::Remove(ChildId id, MassUpdate mass) {
+    const DefaultFloats floats;
     const Result<Edit> edit = PlanRemove(id, mass);
     if (edit) Commit(edit.Value());
     return Forget(edit);
 }
 
 Status MutableCompound::UpdateMass() {
+    const DefaultFloats floats;
     const Status status = ComputeMass();
     if (status) NoteEdit();
     return status;

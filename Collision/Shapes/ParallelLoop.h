@@ -1,6 +1,7 @@
 // A parallel-for callback that lets slow builds of shapes use threads without depending on a job system.
 #pragma once
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Function.h>
 
 #include <cstdint>
@@ -13,7 +14,10 @@ using ParallelLoop = Function<void(uint32_t count, const Function<void(uint32_t)
 
 inline void RunLoop(const ParallelLoop& parallel, uint32_t count, const Function<void(uint32_t)>& job) {
     if (parallel && count > 1) {
-        parallel(count, job);
+        parallel(count, [&](uint32_t i) {
+            const DefaultFloats floats;
+            job(i);
+        });
     } else {
         for (uint32_t i = 0; i < count; ++i) job(i);
     }

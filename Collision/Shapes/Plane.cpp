@@ -1,12 +1,14 @@
 #include <Fulcrum/Collision/Shapes/Plane.h>
 
 #include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <cmath>
 
 namespace fulcrum {
 
 Result<std::shared_ptr<const Plane>> Plane::Create(const Vector3& normal, float offset) {
+    const DefaultFloats floats;
     if (!IsFinite(normal) || !std::isfinite(offset)) {
         return Error{ErrorCode::NonFinite, "the normal or the offset of a plane is not finite"};
     }

@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <cmath>
 
@@ -28,6 +29,7 @@ Bounds SymmetricBounds(const Vector3& halfExtents) {
 }  // namespace
 
 Result<std::shared_ptr<const Sphere>> Sphere::Create(float radius) {
+    const DefaultFloats floats;
     if (const Status size = CheckSize("radius", radius); !size) return size.GetError();
     const double r = radius, volume = 4.0 / 3.0 * kPi * r * r * r;
     const Result<MassProperties> mass = AxisAlignedMass(volume, Position::Constant(0.4 * volume * r * r));
@@ -42,6 +44,7 @@ Result<std::shared_ptr<const Sphere>> Sphere::Create(float radius) {
 }
 
 Result<std::shared_ptr<const Box>> Box::Create(const Vector3& halfExtents, float convexRadius) {
+    const DefaultFloats floats;
     const char* const names[3] = {"half extent x", "half extent y", "half extent z"};
     for (int axis = 0; axis < 3; ++axis) {
         if (const Status size = CheckSize(names[axis], halfExtents[axis]); !size) return size.GetError();
@@ -92,6 +95,7 @@ void Box::FindSupportingFace(const Vector3& direction, SupportingFace& face) con
 }
 
 Result<std::shared_ptr<const Capsule>> Capsule::Create(float halfHeight, float radius) {
+    const DefaultFloats floats;
     if (const Status size = CheckSize("halfHeight", halfHeight); !size) return size.GetError();
     if (const Status size = CheckSize("radius", radius); !size) return size.GetError();
     // Cylinder of length 2h and two hemispheres, whose centers of mass lie 3r/8 beyond the ends of the segment:

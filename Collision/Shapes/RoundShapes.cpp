@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/Revolution.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,6 +34,7 @@ Bounds BoundsAboutY(float radius, float bottom, float top) {
 
 Result<std::shared_ptr<const TaperedCapsule>> TaperedCapsule::Create(float halfHeight, float topRadius,
                                                                      float bottomRadius) {
+    const DefaultFloats floats;
     if (const Status size = CheckSize("halfHeight", halfHeight); !size) return size.GetError();
     if (const Status size = CheckSize("topRadius", topRadius); !size) return size.GetError();
     if (const Status size = CheckSize("bottomRadius", bottomRadius); !size) return size.GetError();
@@ -98,6 +100,7 @@ void TaperedCapsule::FindSupportingFace(const Vector3& direction, SupportingFace
 }
 
 Result<std::shared_ptr<const Cylinder>> Cylinder::Create(float halfHeight, float radius, float convexRadius) {
+    const DefaultFloats floats;
     if (const Status size = CheckSize("halfHeight", halfHeight); !size) return size.GetError();
     if (const Status size = CheckSize("radius", radius); !size) return size.GetError();
     return Make(halfHeight, radius, radius, convexRadius);
@@ -105,6 +108,7 @@ Result<std::shared_ptr<const Cylinder>> Cylinder::Create(float halfHeight, float
 
 Result<std::shared_ptr<const Cylinder>> Cylinder::CreateTapered(float halfHeight, float topRadius, float bottomRadius,
                                                                 float convexRadius) {
+    const DefaultFloats floats;
     if (const Status size = CheckSize("halfHeight", halfHeight); !size) return size.GetError();
     if (const Status size = CheckSizeOrZero("topRadius", topRadius); !size) return size.GetError();
     if (const Status size = CheckSizeOrZero("bottomRadius", bottomRadius); !size) return size.GetError();
@@ -114,6 +118,7 @@ Result<std::shared_ptr<const Cylinder>> Cylinder::CreateTapered(float halfHeight
 }
 
 Result<std::shared_ptr<const Cylinder>> Cylinder::CreateCone(float halfHeight, float radius, float convexRadius) {
+    const DefaultFloats floats;
     if (const Status size = CheckSize("halfHeight", halfHeight); !size) return size.GetError();
     if (const Status size = CheckSize("radius", radius); !size) return size.GetError();
     return Make(halfHeight, 0, radius, convexRadius);

@@ -1,8 +1,11 @@
 #include <Fulcrum/Collision/Shapes/SampledSurface.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
+
 namespace fulcrum {
 
 SampledSurface SampleSurface(const ConvexShape& shape, int divisions) {
+    const DefaultFloats floats;
     SampledSurface surface;
     const int across = divisions + 1;
     surface.vertices.reserve(static_cast<size_t>(6 * across * across));

@@ -9,6 +9,7 @@
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Matrix.h>
 
 #include <cmath>
@@ -170,6 +171,7 @@ Result<std::vector<Compound::ChildSettings>> AsChildren(const ShapePtr& shape) {
 }  // namespace
 
 Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale) {
+    const DefaultFloats floats;
     if (!shape) return Error{ErrorCode::Unsupported, "shape is null"};
     if (!IsFinite(scale)) return Error{ErrorCode::NonFinite, "scale is not finite"};
     const Vector3 size = scale.cwiseAbs();
@@ -222,6 +224,7 @@ Result<ShapePtr> Scaled(const ShapePtr& shape, const Vector3& scale) {
 }
 
 Result<ShapePtr> RotatedTranslated(const ShapePtr& shape, const Vector3& position, const Quaternion& rotation) {
+    const DefaultFloats floats;
     Result<std::vector<Compound::ChildSettings>> children = AsChildren(shape);
     if (!children) return children.GetError();
     for (Compound::ChildSettings& child : children.Value()) {
@@ -232,6 +235,7 @@ Result<ShapePtr> RotatedTranslated(const ShapePtr& shape, const Vector3& positio
 }
 
 Result<ShapePtr> OffsetCenterOfMass(const ShapePtr& shape, const Vector3& offset) {
+    const DefaultFloats floats;
     const Result<std::vector<Compound::ChildSettings>> children = AsChildren(shape);
     if (!children) return children.GetError();
     return AsShape(Compound::Create(children.Value(), offset));

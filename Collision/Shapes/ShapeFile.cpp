@@ -6,6 +6,7 @@
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/ShapeFileParts.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 
@@ -224,6 +225,7 @@ ShapeResult ReadShape(ByteReader& in, const ShapeFileScope& scope) {
 }
 
 Result<std::vector<uint8_t>> SaveShape(const Shape& shape, std::span<const CustomShapeFormat> custom) {
+    const DefaultFloats floats;
     if (const Status status = CheckFormats(custom); !status) return status.GetError();
     if (const Shape* other = Unsupported(shape, custom)) {
         const char* why = other->Type() == ShapeType::Custom ? ": none of the formats given knows its class" : "";
@@ -241,6 +243,7 @@ Result<std::vector<uint8_t>> SaveShape(const Shape& shape, std::span<const Custo
 }
 
 ShapeResult LoadShape(std::span<const uint8_t> bytes, std::span<const CustomShapeFormat> custom) {
+    const DefaultFloats floats;
     if (const Status status = CheckFormats(custom); !status) return status.GetError();
     ByteReader in(bytes);
     if (in.Get<uint32_t>() != kMagic || in.HasFailed()) return Error{ErrorCode::Unsupported, "this is no shape file"};

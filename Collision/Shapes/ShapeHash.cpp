@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>
 #include <Fulcrum/Collision/Shapes/ShapeFile.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Hash.h>
 
 #include <bit>
@@ -62,6 +63,7 @@ uint64_t HashOf(const Shape& shape) {
 }  // namespace
 
 uint64_t ContentHash(const Shape& shape) {
+    const DefaultFloats floats;
     if (shape.Type() == ShapeType::MutableCompound) return HashOf(shape);
     uint64_t hash = shape.hash_.Get();
     if (hash != 0) return hash;

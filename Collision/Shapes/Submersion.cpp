@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/Revolution.h>
 #include <Fulcrum/Collision/Shapes/RoundShapes.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <algorithm>
@@ -245,6 +246,7 @@ SubmergedPart AsEllipsoid(const ConvexShape& shape, const Half& half) {
 }  // namespace
 
 SubmergedPart Submerged(const ConvexShape& shape, const Vector3& up, double level) {
+    const DefaultFloats floats;
     const Half half{up.cast<double>(), level};
     const double centerY = double{shape.Mass().centerOfMass.y()};
     switch (shape.Type()) {
@@ -294,6 +296,7 @@ float ShadowOfFaces(const Solid& solid, const Position& direction) {
 }  // namespace
 
 float ShadowArea(const ConvexShape& shape, const Vector3& direction) {
+    const DefaultFloats floats;
     const float pi = static_cast<float>(kPiHere), along = std::fabs(direction.y());
     const float across = std::sqrt(std::max(1 - along * along, 0.0f));
     switch (shape.Type()) {

@@ -1,6 +1,7 @@
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 
 #include <Fulcrum/Collision/Shapes/Message.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <cmath>
 
@@ -11,6 +12,7 @@ SurfaceShape::~SurfaceShape() = default;
 std::span<const SurfaceMaterial> SurfaceShape::Materials() const { return materials_; }
 
 uint32_t SurfaceShape::FindTriangles(const Bounds& box, std::span<uint32_t> ids) const {
+    const DefaultFloats floats;
     uint32_t count = 0;
     VisitTriangles(box, [&](uint32_t id) {
         if (count < ids.size()) ids[count] = id;

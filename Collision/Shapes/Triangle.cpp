@@ -3,6 +3,7 @@
 #include <Fulcrum/Collision/Shapes/MassProperties.h>
 #include <Fulcrum/Collision/Shapes/SizeChecks.h>
 #include <Fulcrum/Collision/Shapes/SupportingFace.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,7 @@ SolidMass PlateMass(const Position (&corners)[3], const Position& center, const 
 
 Result<std::shared_ptr<const Triangle>> Triangle::Create(const Vector3& a, const Vector3& b, const Vector3& c,
                                                          float radius) {
+    const DefaultFloats floats;
     const Vector3 given[3] = {a, b, c};
     for (int i = 0; i < 3; ++i)
         if (!IsFinite(given[i])) return Error{ErrorCode::NonFinite, Message("corner %c is not finite", 'a' + i)};

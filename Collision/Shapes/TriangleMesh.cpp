@@ -5,6 +5,7 @@
 #include <Fulcrum/Collision/Shapes/Message.h>
 #include <Fulcrum/Collision/Shapes/SurfaceLimits.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,6 +46,7 @@ TriangleMesh::~TriangleMesh() = default;
 
 Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Create(const TriangleMeshSettings& settings,
                                                                  MeshReport* report, const ParallelLoop& parallel) {
+    const DefaultFloats floats;
     if (const Status status = CheckSettings(settings); !status) return status.GetError();
     if (const Status status = CheckMaterials(settings.materials); !status) return status.GetError();
     MeshReport ownReport;
@@ -67,6 +69,7 @@ Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Create(const TriangleM
 }
 
 Result<std::shared_ptr<const TriangleMesh>> TriangleMesh::Scaled(const TriangleMesh& mesh, const Vector3& scale) {
+    const DefaultFloats floats;
     if (!IsFinite(scale)) return Error{ErrorCode::NonFinite, "the scale is not finite"};
     const Vector3 whole = mesh.scale_.cwiseProduct(scale);
     for (int axis = 0; axis < 3; ++axis) {
@@ -114,7 +117,10 @@ void TriangleMesh::Finish(MeshReport* report) {
 
 uint32_t TriangleMesh::TriangleIdEnd() const { return tree_->triangleCount; }
 uint32_t TriangleMesh::VertexCount() const { return tree_->VertexCount(); }
-Vector3 TriangleMesh::Vertex(uint32_t id) const { return tree_->vertices[id].cwiseProduct(scale_); }
+Vector3 TriangleMesh::Vertex(uint32_t id) const {
+    const DefaultFloats floats;
+    return tree_->vertices[id].cwiseProduct(scale_);
+}
 bool TriangleMesh::HasSourceTriangles() const { return !tree_->sources.empty(); }
 uint32_t TriangleMesh::SourceTriangle(uint32_t id) const { return tree_->sources[id]; }
 
@@ -135,6 +141,7 @@ inline void TriangleMesh::FillView(uint32_t id, TriangleView& view) const {
 }
 
 TriangleView TriangleMesh::GetTriangle(uint32_t id) const {
+    const DefaultFloats floats;
     TriangleView view;
     FillView(id, view);
     return view;

@@ -4,6 +4,7 @@
 #include <Fulcrum/Collision/Shapes/RayTriangle.h>
 #include <Fulcrum/Collision/Shapes/SurfaceNormal.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <array>
@@ -159,6 +160,7 @@ inline Vector3 TriangleMesh::NormalOf(uint32_t id) const {
 }
 
 bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFraction) const {
+    const DefaultFloats floats;
     ClosestHit best{maxFraction};
     Traverse(ray, maxFraction,
              [&](uint32_t id, float fraction, bool isBackFace) { return best.Take(id, fraction, isBackFace); });
@@ -170,6 +172,7 @@ bool TriangleMesh::CastRay(const SurfaceRay& ray, SurfaceHit& hit, float maxFrac
 // Ray packets: the tree is searched with one moving box that contains all rays, and each ray is tested against the
 // boxes of the leaves found and their triangles.
 uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hits, const float* maxFractions) const {
+    const DefaultFloats floats;
     constexpr float kSlack = 1.0f + 0x1p-18f;
     // If more leaves per ray are found that no ray hits, single casts are faster.
     constexpr int kMostMissedLeaves = 2;
@@ -235,6 +238,7 @@ uint32_t TriangleMesh::CastRays(std::span<const SurfaceRay> rays, SurfaceHit* hi
 }
 
 bool TriangleMesh::IsHit(const SurfaceRay& ray, float maxFraction) const {
+    const DefaultFloats floats;
     bool isHit = false;
     Traverse(ray, maxFraction, [&](uint32_t, float, bool) {
         isHit = true;
@@ -244,6 +248,7 @@ bool TriangleMesh::IsHit(const SurfaceRay& ray, float maxFraction) const {
 }
 
 void TriangleMesh::SearchRay(const SurfaceRay& ray, float maxFraction, void* context, HitFunction found) const {
+    const DefaultFloats floats;
     Traverse(ray, maxFraction, [&](uint32_t id, float fraction, bool isBackFace) {
         const ClosestHit hit{fraction, id, isBackFace};
         return found(context, hit.ToHit(NormalOf(id))) ? maxFraction : -1.0f;

@@ -1,5 +1,7 @@
 #include <Fulcrum/Constraints/Joints/Path.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -42,6 +44,7 @@ Path::Place Path::PlaceOf(double t) const {
 double Path::Bounded(double t) const { return isClosed_ ? t : std::clamp(t, 0.0, End()); }
 
 PathSample Path::Sample(double t) const {
+    const DefaultFloats floats;
     const Place place = PlaceOf(t);
     const Curve c = CurveAt(points_[place.segment], PointAfter(place.segment), static_cast<float>(place.u));
     PathSample s;
@@ -81,6 +84,7 @@ double Path::SegmentLength(size_t segment, double u) const {
 }
 
 double Path::LengthAt(double t) const {
+    const DefaultFloats floats;
     const Place place = PlaceOf(t);
     const double before = place.segment == 0 ? 0.0 : lengths_[place.segment - 1];
     return place.laps * Length() + before + SegmentLength(place.segment, place.u);
@@ -89,6 +93,7 @@ double Path::LengthAt(double t) const {
 // Half the squared distance has the first derivative P' . (P - x) and the second P'' . (P - x) + |P'|^2. If the second
 // is small or negative, near a center of curvature, its second term alone still gives a descent direction.
 double Path::Closest(const Vector3& point, double from) const {
+    const DefaultFloats floats;
     double t = Bounded(from);
     for (int i = 0; i < 16; ++i) {
         const Place place = PlaceOf(t);
@@ -105,6 +110,7 @@ double Path::Closest(const Vector3& point, double from) const {
 }
 
 double Path::Closest(const Vector3& point) const {
+    const DefaultFloats floats;
     double best = 0;
     float least = std::numeric_limits<float>::infinity();
     const int count = static_cast<int>(SegmentCount()) * kSearchesPerSegment;
@@ -148,16 +154,19 @@ Result<std::shared_ptr<const Path>> Path::Make(std::vector<PathPoint> points, bo
 }
 
 Result<std::shared_ptr<const Path>> Path::Hermite(std::span<const PathPoint> points, bool isClosed) {
+    const DefaultFloats floats;
     return Make({points.begin(), points.end()}, isClosed);
 }
 
 std::shared_ptr<const Path> Path::Straight(float length) {
+    const DefaultFloats floats;
     const Vector3 whole(length, 0, 0);
     return Make({{whole * -0.5f, whole}, {whole * 0.5f, whole}}, false).Value();
 }
 
 Result<std::shared_ptr<const Path>> Path::CatmullRom(std::span<const Vector3> positions,
                                                      std::span<const Vector3> normals, bool isClosed) {
+    const DefaultFloats floats;
     const size_t count = positions.size();
     if (normals.size() != count && normals.size() != 1)
         return Error{ErrorCode::OutOfRange, "path has " + std::to_string(normals.size()) +

@@ -6,6 +6,7 @@
 #include <Fulcrum/Collision/Shapes/Primitives.h>
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
 #include <Fulcrum/Collision/Shapes/Triangle.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
 #include <limits>
@@ -89,6 +90,7 @@ void VisitPlane(const Plane& plane, float extent, const TriangleVisitor& visit) 
 }  // namespace
 
 void VisitTriangles(const Shape& shape, FunctionRef<void(const DrawnTriangle&)> visit, int detail, float planeExtent) {
+    const DefaultFloats floats;
     detail = std::clamp(detail, 0, 6);
     // From a center frame to the user's.
     const auto placed = [&](const Vector3& position, const Quaternion& rotation, const ConvexShape& convex) {

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Drawing/WorldDrawing.h>
 
 #include <Fulcrum/Constraints/Joints/JointType.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Drawing/ShapeTriangles.h>
 
 #include <string>
@@ -100,6 +101,7 @@ DrawingColor ColorOf(const BodyInterface& bodies, BodyId id, const DrawingColors
 }
 
 void Draw(const PhysicsSystem& system, DrawingTarget& target, const DrawingSettings& settings) {
+    const DefaultFloats floats;
     Drawer drawer(system, target, settings);
     system.VisitBodies([&](BodyId id) { drawer.DrawBody(id); });
     if (settings.contacts) system.VisitContacts([&](const ContactView& contact) { drawer.DrawContact(contact); });

@@ -2,6 +2,7 @@
 
 #include <Fulcrum/Collision/Shapes/CompoundShape.h>
 #include <Fulcrum/Collision/Shapes/Submersion.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/Validation.h>
 
@@ -154,6 +155,7 @@ MaybeError CheckAll(const char* list, const std::vector<Field>& fields) {
 }  // namespace
 
 Status Fields::Apply(PhysicsSystem& system, double dt, const QueryFilter& filter) {
+    const DefaultFloats floats;
     if (MaybeError error = FirstOf(CheckPositive("dt", dt), CheckRange("dt", dt, 0, 1), CheckAll("waters", waters),
                                    CheckAll("winds", winds), CheckAll("forces", forces)))
         return *error;
@@ -180,6 +182,7 @@ Status Fields::Apply(PhysicsSystem& system, double dt, const QueryFilter& filter
 }
 
 Lift SubmergedVolume(const BodyInterface& bodies, BodyId id, const Vector3& up, double level) {
+    const DefaultFloats floats;
     if (!bodies.Exists(id)) return {};
     return SubmergedOf(*bodies.GetShape(id), {bodies.GetCenterOfMass(id), bodies.GetPose(id).rotation}, up, level);
 }

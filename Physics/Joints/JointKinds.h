@@ -21,3 +21,15 @@
 #define FULCRUM_FOR_EACH_JOINT_KIND(call)                                                                    \
     call(Point) call(Fixed) call(Distance) call(Hinge) call(Slider) call(Cone) call(SwingTwist) call(SixDof) \
         call(Gear) call(RackAndPinion) call(Pulley) call(Path) call(Wheel) call(Custom)
+
+namespace fulcrum {
+
+// Whether a structure has the settings of a kind of joint: JointSettings alone, which all kinds share, are of none.
+#define FULCRUM_IS_SAME(kind) || std::is_same_v<Settings, kind##JointSettings>
+template <class Settings>
+inline constexpr bool kIsOfAKindOfJoint = false FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_IS_SAME);
+#undef FULCRUM_IS_SAME
+template <class Settings>
+concept SettingsOfAKindOfJoint = kIsOfAKindOfJoint<Settings>;
+
+}  // namespace fulcrum

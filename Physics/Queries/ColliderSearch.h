@@ -2,6 +2,7 @@
 // QueryInterface under the world's lock. Allocates nothing; thread-safe.
 #pragma once
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/QueryTypes.h>
 #include <Fulcrum/Physics/World/WorldState.h>
@@ -107,6 +108,7 @@ public:
     explicit operator bool() const { return !shared_.Refusal(); }
 
 private:
+    const DefaultFloats floats_;
     WorldLock::Shared shared_;
 };
 

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Ragdoll/Ragdoll.h>
 
 #include <Fulcrum/Constraints/Joints/JointAngles.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/BodyBatch.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/Misuse.h>
@@ -90,6 +91,7 @@ std::span<const JointId> Ragdoll::Joints() const { return joints_; }
 
 Result<Ragdoll> Ragdoll::Create(PhysicsSystem& system, const RagdollSettings& settings, const Pose& origin,
                                 std::optional<MotionType> motion) {
+    const DefaultFloats floats;
     if (MaybeError e = FirstOf(Check(settings), CheckPosition("origin.position", origin.position),
                                CheckRotation("origin.rotation", origin.rotation)))
         return *e;
@@ -163,6 +165,7 @@ MaybeError Ragdoll::CheckDrive(std::span<const Pose> pose, float dt) const {
 }
 
 Status Ragdoll::GetPose(std::span<Pose> pose) const {
+    const DefaultFloats floats;
     if (MaybeError e = CheckExists()) return *e;
     if (pose.size() != bodies_.size())
         return Error{ErrorCode::OutOfRange, "pose has " + std::to_string(pose.size()) + " elements; it must have " +
@@ -172,6 +175,7 @@ Status Ragdoll::GetPose(std::span<Pose> pose) const {
 }
 
 Status Ragdoll::SetPose(std::span<const Pose> pose) {
+    const DefaultFloats floats;
     if (MaybeError e = CheckPose(pose)) return *e;
     for (size_t i = 0; i < pose.size(); ++i)
         if (Status set = system_->Bodies().SetPose(bodies_[i], pose[i].position, pose[i].rotation); !set) return set;
@@ -179,6 +183,7 @@ Status Ragdoll::SetPose(std::span<const Pose> pose) {
 }
 
 Status Ragdoll::DriveByMotors(std::span<const Pose> pose) {
+    const DefaultFloats floats;
     if (MaybeError e = CheckPose(pose)) return *e;
     for (size_t i = 1; i < pose.size(); ++i) {
         if (!system_->Joints().Exists(joints_[i])) continue;
@@ -218,8 +223,14 @@ void Ragdoll::SetTarget(JointId joint, const RelativePose& target) {
     }
 }
 
-Status Ragdoll::DriveByVelocities(std::span<const Pose> pose, float dt) { return Drive(pose, dt, true); }
-Status Ragdoll::DriveKinematically(std::span<const Pose> pose, float dt) { return Drive(pose, dt, false); }
+Status Ragdoll::DriveByVelocities(std::span<const Pose> pose, float dt) {
+    const DefaultFloats floats;
+    return Drive(pose, dt, true);
+}
+Status Ragdoll::DriveKinematically(std::span<const Pose> pose, float dt) {
+    const DefaultFloats floats;
+    return Drive(pose, dt, false);
+}
 
 Status Ragdoll::Drive(std::span<const Pose> pose, float dt, bool dynamicToo) {
     if (MaybeError e = CheckDrive(pose, dt)) return *e;
@@ -257,6 +268,7 @@ std::pair<Vector3, Vector3> Ragdoll::VelocityTo(size_t part, const Pose& pose, f
 }
 
 Status Ragdoll::SetMotors(const JointMotor& motor) {
+    const DefaultFloats floats;
     JointInterface& joints = system_->Joints();
     for (JointId joint : joints_) {
         for (JointAxis axis : kAngularAxes) {
@@ -270,6 +282,9 @@ Status Ragdoll::SetMotors(const JointMotor& motor) {
     return Done{};
 }
 
-Pose Ragdoll::Origin() const { return system_->Bodies().GetPose(bodies_[0]) * originInRoot_; }
+Pose Ragdoll::Origin() const {
+    const DefaultFloats floats;
+    return system_->Bodies().GetPose(bodies_[0]) * originInRoot_;
+}
 
 }  // namespace fulcrum

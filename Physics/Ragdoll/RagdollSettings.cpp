@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
 
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
 namespace fulcrum {
@@ -46,6 +47,7 @@ JointSettings& CommonOf(RagdollJoint& joint) {
 }
 
 MaybeError Check(const RagdollSettings& settings) {
+    const DefaultFloats floats;
     if (settings.parts.empty()) return Error{ErrorCode::Degenerate, "parts is empty; a ragdoll needs one part or more"};
     for (size_t i = 0; i < settings.parts.size(); ++i) {
         const RagdollPart& part = settings.parts[i];
@@ -59,6 +61,7 @@ MaybeError Check(const RagdollSettings& settings) {
 }
 
 RagdollJointFrames JointFramesOf(const RagdollSettings& settings, size_t part) {
+    const DefaultFloats floats;
     const RagdollPart& child = settings.parts[part];
     const Pose childPose = PoseOf(child), parentPose = PoseOf(settings.parts[static_cast<size_t>(child.parent)]);
     const JointSettings& joint = CommonOf(child.joint);
@@ -89,6 +92,7 @@ RagdollJointFrames JointFramesOf(const RagdollSettings& settings, size_t part) {
 }
 
 void ReferencePose(const RagdollSettings& settings, const Pose& origin, std::span<Pose> pose) {
+    const DefaultFloats floats;
     FULCRUM_ASSERT(pose.size() == settings.parts.size());
     for (size_t i = 0; i < pose.size(); ++i) {
         const Pose own = PoseOf(settings.parts[i]);
@@ -99,6 +103,7 @@ void ReferencePose(const RagdollSettings& settings, const Pose& origin, std::spa
 
 void PoseFromJoints(const RagdollSettings& settings, const Pose& root, std::span<const Quaternion> jointRotations,
                     std::span<Pose> pose) {
+    const DefaultFloats floats;
     FULCRUM_ASSERT(pose.size() == settings.parts.size() && jointRotations.size() == pose.size());
     pose[0] = root;
     for (size_t i = 1; i < pose.size(); ++i) {

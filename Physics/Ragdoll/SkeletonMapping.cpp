@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Ragdoll/SkeletonMapping.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Math/Trigonometry.h>
 
 #include <algorithm>
@@ -63,6 +64,7 @@ std::vector<SkeletonPair> PairsByName(const Skeleton& skeleton, const RagdollSet
 
 Result<SkeletonMapping> SkeletonMapping::Create(const Skeleton& skeleton, const RagdollSettings& ragdoll,
                                                 std::span<const SkeletonPair> pairs) {
+    const DefaultFloats floats;
     if (MaybeError e = FirstOf(Check(ragdoll), CheckSkeleton(skeleton))) return *e;
     SkeletonMapping mapping;
     for (const SkeletonJoint& joint : skeleton.joints) {
@@ -136,6 +138,7 @@ void SkeletonMapping::AddChain(const Skeleton& skeleton, int end, std::vector<bo
 
 void SkeletonMapping::PoseJoints(const Pose& origin, std::span<const RelativePose> locals,
                                  std::span<Pose> joints) const {
+    const DefaultFloats floats;
     FULCRUM_ASSERT(locals.size() == joints_.size() && joints.size() == joints_.size());
     for (size_t j = 0; j < joints_.size(); ++j) {
         const int parent = joints_[j].parent;
@@ -145,6 +148,7 @@ void SkeletonMapping::PoseJoints(const Pose& origin, std::span<const RelativePos
 }
 
 void SkeletonMapping::ToRagdoll(std::span<const Pose> joints, std::span<Pose> parts) const {
+    const DefaultFloats floats;
     FULCRUM_ASSERT(joints.size() == joints_.size() && parts.size() == parts_.size());
     for (size_t p = 0; p < parts_.size(); ++p) {
         const Part& part = parts_[p];
@@ -186,6 +190,7 @@ void SkeletonMapping::PlaceChain(const Chain& chain, std::span<const RelativePos
 
 void SkeletonMapping::ToSkeleton(const Pose& origin, std::span<const Pose> parts, std::span<RelativePose> locals,
                                  std::span<Pose> joints) const {
+    const DefaultFloats floats;
     FULCRUM_ASSERT(parts.size() == parts_.size() && locals.size() == joints_.size() && joints.size() == joints_.size());
     for (size_t j = 0; j < joints_.size(); ++j) {
         if (joints_[j].part == kNone) continue;

@@ -1,5 +1,7 @@
 #include <Fulcrum/Physics/Ragdoll/Stabilize.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
+
 #include <algorithm>
 
 namespace fulcrum {
@@ -18,16 +20,19 @@ const RagdollPart* MovingParentOf(const RagdollSettings& settings, const Ragdoll
 }  // namespace
 
 float MassOf(const BodySettings& body) {
+    const DefaultFloats floats;
     return body.mass > 0.0f ? body.mass : body.density * body.shape->Mass().volume;
 }
 
 Vector3 InertiaOf(const BodySettings& body) {
+    const DefaultFloats floats;
     if (!body.inertia.isZero(0)) return body.inertia;
     const MassProperties& shape = body.shape->Mass();
     return shape.principalInertia * (MassOf(body) / shape.volume);
 }
 
 Status StabilizeMasses(RagdollSettings& settings, const MassRule& rule) {
+    const DefaultFloats floats;
     if (MaybeError e =
             FirstOf(Check(settings), CheckPositive("smallest", rule.smallest), CheckPositive("largest", rule.largest),
                     CheckRange("smallest", rule.smallest, 0.0, rule.largest)))
@@ -61,6 +66,7 @@ Status StabilizeMasses(RagdollSettings& settings, const MassRule& rule) {
 }
 
 Status StabilizeInertia(RagdollSettings& settings, const InertiaRule& rule) {
+    const DefaultFloats floats;
     if (MaybeError e = FirstOf(Check(settings), CheckPositive("principalRatio", rule.principalRatio),
                                CheckPositive("childRatio", rule.childRatio)))
         return *e;

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Recording/Replay.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Recording/CallPlayer.h>
 #include <Fulcrum/Physics/Recording/RecordingFormat.h>
 
@@ -129,6 +130,7 @@ private:
 }  // namespace
 
 Result<ReplayReport> Replay(const CallRecording& recording, const ReplaySettings& settings) {
+    const DefaultFloats floats;
     const Result<RecordedObjects> objects = ReadObjects(recording, settings.sources);
     if (!objects) return objects.GetError();
     return Replayer(recording, settings, objects.Value()).Run();

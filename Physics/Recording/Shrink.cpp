@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Recording/Shrink.h>
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Recording/CallPlayer.h>
 #include <Fulcrum/Physics/Recording/CallRecorder.h>
 #include <Fulcrum/Physics/Recording/RecordingFormat.h>
@@ -212,6 +213,7 @@ FailureCheck FailureOfDifference() {
 
 Result<ShrinkReport> Shrink(const CallRecording& recording, const FailureCheck& failure,
                             const ShrinkSettings& settings) {
+    const DefaultFloats floats;
     if (settings.jobs.empty()) return Error{ErrorCode::OutOfRange, "jobs is empty; the program needs a world"};
     if (!failure && !settings.isolation) return Error{ErrorCode::Unsupported, "failure is empty; nothing would fail"};
     const Result<RecordedObjects> objects = ReadObjects(recording, settings.sources);

@@ -255,7 +255,7 @@ inline constexpr size_t kMostOfPair = 512;
 template <class Stream, class Pair>
 FULCRUM_INLINE_IN_LOOP bool VisitPair(Stream& s, Pair& pair, bool& isActive, bool& hasContact, uint32_t& more) {
     auto& [bodyA, bodyB, colliderA, colliderB, cache, contact, pointCount, exists, fixedB, offset, surface, touching,
-           onSeam, isMore, material] = pair;
+           onSeam, kept, isMore, material] = pair;
     auto& [kind, indexA, indexB, axis] = cache;
     const uint8_t bits = VisitBits(s, exists, fixedB, offset, surface, touching, onSeam, isMore, isActive);
     if constexpr (!Stream::kWrites) {
@@ -265,6 +265,7 @@ FULCRUM_INLINE_IN_LOOP bool VisitPair(Stream& s, Pair& pair, bool& isActive, boo
         surface = bits >> 3 & 1;
         touching = bits >> 4 & 1;
         onSeam = bits >> 5 & 1;
+        kept = false;
         isMore = bits >> 6 & 1;
         isActive = bits >> 7 & 1;
         material = 0;

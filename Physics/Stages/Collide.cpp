@@ -60,6 +60,7 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     const BodyPose& poseA = stores.bodies.poses[pair.bodyA];
     const BodyPose& poseB = stores.bodies.poses[pair.bodyB];
     const uint32_t now = static_cast<uint32_t>(stores.step.number);
+    if (!stores.IsSecondPass()) pair.kept = false;
     if (!stores.IsSecondPass() && (poseA.boundsChangedIn == now || poseB.boundsChangedIn == now) &&
         !Overlap(stores.colliders, pair))
         return PairChange::Dead;
@@ -73,9 +74,11 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
     const PairView view = ViewPair(stores, index);
     const bool hardlyMoved = pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact]);
     if (hardlyMoved && !stores.IsSecondPass()) {
+        pair.kept = true;
         ++findings.kept;
     } else {
-        if (hardlyMoved && changes[index] != PairChange::Dead) --findings.kept;  // counted by the first pass
+        findings.kept -= pair.kept;  // counted by an earlier pass
+        pair.kept = false;
         Manifold manifold;
         FindManifold(stores, view, reachAhead, manifold, findings);
         if (pair.contact == PairStore::kNone) {

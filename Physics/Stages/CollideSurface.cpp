@@ -121,9 +121,11 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     Array<PairContact>& contacts = stores.pairs.contacts;
     const bool hardlyMoved = touches && HardlyMoved(view, contacts[view.pair.contact]);
     if (hardlyMoved && !stores.IsSecondPass()) {
+        stores.pairs.pairs[first].kept = true;
         ++findings.kept;
     } else {
-        if (hardlyMoved) --findings.kept;  // counted by the first pass
+        findings.kept -= stores.pairs.pairs[first].kept;  // counted by an earlier pass
+        stores.pairs.pairs[first].kept = false;
         FindSurfaceManifolds(stores, view, first, reach, findings);
         WriteSurfaceManifolds(stores, view, first, true, findings);
         for (const uint32_t m : findings.surfaceLeft)

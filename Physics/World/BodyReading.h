@@ -2,6 +2,7 @@
 // changes while it lets queries in (velocities, whether a body is awake) ask for Access::Reads, the others for Queries.
 #pragma once
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Misuse.h>
 #include <Fulcrum/Physics/World/WorldState.h>
 
@@ -34,6 +35,7 @@ public:
     explicit operator bool() const { return exists_; }
 
 private:
+    const DefaultFloats floats_;
     std::optional<WorldLock::Shared> shared_;
     bool exists_ = false;
 };

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/World/BodyStore.h>
 
+#include <Fulcrum/Math/Assert.h>
 #include <Fulcrum/Physics/World/HeapBytes.h>
 #include <Fulcrum/Physics/World/ReserveMore.h>
 
@@ -49,6 +50,7 @@ void BodyStore::Reserve(size_t more, size_t placedMore) {
 }
 
 void BodyStore::Free(uint32_t index) {
+    FULCRUM_ASSERT(!dynamics[index].awake);
     const uint32_t generation = cold[index].generation + 1;
     const bool isPlacedAsleep = cold[index].placed && !dynamics[index].awake;
     states[index] = {};

@@ -28,6 +28,7 @@ struct Pair {
     bool surface : 1 = false;   // B is a surface
     bool touching : 1 = false;  // was active and had points in the last step
     bool onSeam : 1 = false;    // its record has no points, since the contact is a ghost collision at a seam
+    bool kept : 1 = false;      // within a step: its manifold is that of the last one, and was counted as such
     bool isMore = false;        // for surfaces: an additional manifold of another pair
     uint8_t material = 0;       // for surfaces: index into the palette
 };

@@ -30,8 +30,10 @@ void RequeueColliders(const BodyStore& bodies, ColliderStore& colliders, uint32_
 }
 
 void WakeBody(const SleepStores& stores, uint32_t body) {
+    // Not what was removed since the last step, whose pairs are there still: it would be awake for ever.
     const auto maySleep = [&](uint32_t b) {
-        return stores.bodies.dynamics[b].motion == MotionType::Dynamic && !stores.bodies.dynamics[b].frozen;
+        return stores.bodies.dynamics[b].motion == MotionType::Dynamic && !stores.bodies.dynamics[b].frozen &&
+               !stores.bodies.cold[b].removed;
     };
     if (!maySleep(body)) return;
     if (stores.bodies.dynamics[body].awake) {

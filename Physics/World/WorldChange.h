@@ -1,11 +1,12 @@
-// Exclusive access to the world for a call of the public interface, which the observer of calls then sees. The first
-// line of each function that changes the world:
+// Exclusive access to the world, in the default floating-point environment, for a call of the public interface, which
+// the observer of calls then sees. The first line of each function that changes the world:
 //     const WorldChange<&BodyInterface::SetLayer> change(world_, id, layer);
 //     if (change.Refusal()) return *change.Refusal();
 // Calls made of other public calls have none: the observer sees those. Edits of shapes since the last call come before
 // it: so what follows from them does not depend on whether the state was saved or hashed between.
 #pragma once
 
+#include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/CallObserver.h>
 #include <Fulcrum/Physics/World/ShapeEdits.h>
 
@@ -44,6 +45,7 @@ public:
     }
 
 private:
+    const DefaultFloats floats_;
     CallObserver* observer_;
     int exceptions_ = -1;  // in flight when the observer was told of the call; -1: it was not
 };

@@ -8,6 +8,9 @@
 //
 // A writer that is cut short by an exception after its Begin() leaves a broken world. Access to it is refused, but for
 // the writer that restores it.
+//
+// Objects that hold the lock may end in any order: it is given back with the last of those within the one that took it.
+// They end on the thread that made them; elsewhere the program is stopped.
 #pragma once
 
 #include <Fulcrum/Jobs/JobSystem.h>
@@ -42,7 +45,7 @@ public:
 
     // Records this thread's access for the lifetime of the object, without taking the lock. Used directly by workers
     // that run jobs of a thread which holds the lock.
-    class Scope : private MemoryScope {
+    class Scope {
     public:
         Scope(WorldLock& lock, Access access);
         ~Scope();
@@ -51,11 +54,13 @@ public:
 
     protected:
         WorldLock& lock_;
-        const Access before_;  // this thread's access outside the scope
+        Access taken_ = Access::None;  // of the lock, to be given back
 
     private:
         friend class WorldLock;
+        void EndBeforeInner();
         Scope* outer_;
+        MemoryResource* memoryBefore_;
         Access access_;
     };
 
@@ -63,15 +68,13 @@ public:
     public:
         // access: Queries or Reads.
         explicit Shared(WorldLock& lock, Access access = Access::Reads);
-        ~Shared();
         // Empty unless this thread is changing or stepping the world, or holds it for queries alone and asks for more:
         // then the object does nothing; or the world is broken.
         const std::optional<Error>& Refusal() const { return refusal_; }
 
     private:
-        Shared(WorldLock& lock, Access access, std::optional<Error> refusal);
+        Shared(WorldLock& lock, Access access, Access before);
         std::optional<Error> refusal_;
-        Access taken_ = Access::None;
     };
 
     class Exclusive : public Scope {
@@ -86,7 +89,7 @@ public:
         void Begin() const;
 
     private:
-        Exclusive(WorldLock& lock, Access access, std::optional<Error> refusal);
+        Exclusive(WorldLock& lock, Access access, Access before);
         std::optional<Error> refusal_;
         mutable int exceptions_ = -1;  // in flight at Begin(); -1: it has not begun
     };
@@ -102,6 +105,7 @@ private:
     struct State;  // so that <atomic>, which is slow to compile, stays out of programs
     bool IsStepsOwn() const;
     void Break();
+    void Leave(Access taken);
     const std::unique_ptr<State> state_;
     MemoryResource* const memory_;
     bool isBroken_ = false;  // atomic

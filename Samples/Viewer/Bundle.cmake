@@ -1,5 +1,5 @@
 # Bundles pages from npm packages (package-lock.json says which), once for all build folders in node_modules beside this file,
-# which git ignores.
+# which git ignores; in the build folder where this one is not to be written.
 find_program(FULCRUM_NODE NAMES node nodejs)
 find_program(FULCRUM_NPM NAMES npm)
 mark_as_advanced(FULCRUM_NODE FULCRUM_NPM)
@@ -11,6 +11,14 @@ if(NOT FULCRUM_NODE OR NOT FULCRUM_NPM)
 endif()
 
 set(FULCRUM_PAGE_FOLDER ${CMAKE_CURRENT_LIST_DIR} CACHE INTERNAL "Where build.mjs and its packages are")
+execute_process(COMMAND ${CMAKE_COMMAND} -E make_directory ${FULCRUM_PAGE_FOLDER}/node_modules
+  COMMAND ${CMAKE_COMMAND} -E touch ${FULCRUM_PAGE_FOLDER}/node_modules/.written RESULT_VARIABLE failed ERROR_QUIET)
+if(failed)
+  set(FULCRUM_PAGE_FOLDER ${CMAKE_BINARY_DIR}/pages CACHE INTERNAL "")
+  foreach(file build.mjs package.json package-lock.json .npmrc)
+    configure_file(${CMAKE_CURRENT_LIST_DIR}/${file} ${FULCRUM_PAGE_FOLDER}/${file} COPYONLY)
+  endforeach()
+endif()
 add_custom_command(
   OUTPUT ${FULCRUM_PAGE_FOLDER}/node_modules/.package-lock.json
   COMMAND ${FULCRUM_NPM} ci

@@ -28,6 +28,22 @@ foreach(header IN LISTS headers)
   endif()
 endforeach()
 
+# Each begins with what stops a compiler of an earlier C++ at once, by itself or by what it includes.
+foreach(header IN LISTS headers)
+  file(STRINGS ${header} included REGEX "#include <Fulcrum/")
+  if(NOT included AND NOT header MATCHES "/(Version|NeedsCpp20)\\.h$")
+    message(FATAL_ERROR "${header} includes no other header, and so needs <Fulcrum/Math/NeedsCpp20.h>")
+  endif()
+endforeach()
+file(WRITE ${WORK}/cpp17.cpp "#include <Fulcrum/Fulcrum.h>\n")
+execute_process(COMMAND ${COMPILER} -std=c++17 -fsyntax-only -I${WORK}/prefix/include ${WORK}/cpp17.cpp
+  RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
+string(REGEX MATCHALL "error: " errors "${output}")
+list(LENGTH errors count)
+if(status EQUAL 0 OR NOT count EQUAL 1 OR NOT output MATCHES "error: [^\n]*C\\+\\+20")
+  message(FATAL_ERROR "C++17 gives ${count} errors in place of one that says C++20:\n${output}")
+endif()
+
 configure(${CMAKE_CURRENT_LIST_DIR}/Headers ${WORK}/build "${strict}"
   -DCMAKE_PREFIX_PATH=${WORK}/prefix -DINCLUDE_FOLDER=${WORK}/prefix/include)
 run(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2)
