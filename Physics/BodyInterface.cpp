@@ -112,14 +112,6 @@ void Include(Additions& more, const ColliderStore& colliders, const BodySettings
     more.InTree(settings.motion != MotionType::Static, settings.isSensor) += count;
 }
 
-// PlaceStatic will ask the tree of what may move. Before ReserveForChange, since a rebuild asks for memory.
-void OptimizeFor(WorldState& world, std::span<const BodySettings> bodies) {
-    const auto isStatic = [](const BodySettings& s) { return s.motion == MotionType::Static; };
-    const auto count = static_cast<uint32_t>(std::count_if(bodies.begin(), bodies.end(), isStatic));
-    if (count > 0) world.colliders.movingTree.Optimize(count);
-}
-
-// Asks for no memory after ReserveForChange.
 BodyId Add(WorldState& world, const BodySettings& settings, NewBody&& own) {
     const uint32_t body = world.bodies.Allocate();
     BodyCold& cold = world.bodies.cold[body];
@@ -182,8 +174,7 @@ public:
     }
     void Keep() { before_.clear(); }
 
-    // The contacts of `body`, of which `from` goes, or is unloaded; from: kNone for the body that goes, whose contacts
-    // are only read.
+    // `from`, above `body`, goes or is unloaded; kNone for the body that goes, whose contacts are only read.
     void Run(uint32_t body, uint32_t from, float load, int depth = 0) {
         Array<std::pair<uint32_t, float>> contacts;
         float sum = 0;
@@ -233,7 +224,7 @@ Result<BodyId> BodyInterface::Create(const BodySettings& settings) {
     NewBody own(settings);
     Additions more;
     Include(more, world_.colliders, settings);
-    OptimizeFor(world_, {&settings, 1});
+    if (settings.motion == MotionType::Static) world_.colliders.movingTree.Optimize(1);  // PlaceStatic asks it
     ReserveForChange(world_, more);
     change.Begin();
     return change.Created<BodyId>(Add(world_, settings, std::move(own)));
@@ -261,8 +252,8 @@ Result<BatchIds> BodyInterface::Commit(const BodyBatch& batch) {
         own.emplace_back(settings);
         Include(more, nothingFree, settings);
     }
+    if (more.inStatic > 0) world_.colliders.movingTree.Optimize(1);  // PlaceStatic asks it
     for (const BodyBatch::Joint& joint : batch.Joints()) IncludeJoint(world_, CommonOf(joint), more);
-    OptimizeFor(world_, batch.Bodies());
     ReserveForChange(world_, more);
     BatchIds ids;
     ids.bodies.reserve(batch.Bodies().size());
