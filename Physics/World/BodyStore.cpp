@@ -22,6 +22,7 @@ uint32_t BodyStore::Allocate() {
         dynamics.emplace_back();
         cold.emplace_back();
         remainders.emplace_back();
+        slowMotions.emplace_back();
         for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable}) set->Reserve(index + 1);
     }
     cold[index].exists = true;
@@ -39,6 +40,7 @@ void BodyStore::Reserve(size_t more) {
     ReserveMore(dynamics, grown);
     ReserveMore(cold, grown);
     ReserveMore(remainders, grown);
+    ReserveMore(slowMotions, grown);
     ReserveMore(awake, more);
     ReserveMore(placed, more);
 }
@@ -49,6 +51,7 @@ void BodyStore::Free(uint32_t index) {
     masses[index] = {};
     poses[index] = {};
     dynamics[index] = {};
+    slowMotions[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
     for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable}) set->Erase(index);
@@ -193,12 +196,12 @@ size_t HeapBytes(const BodyCold& body) {
 }
 
 size_t HeapBytes(const BodyStore& store) {
-    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                 continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
+    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, slowMotions, placed, awake,
+                 worldBody, continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
                  notesSleepChanges, free, count] = store;
-    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                     continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
-                     notesSleepChanges, free, count);
+    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, slowMotions, placed, awake,
+                     worldBody, continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable,
+                     sleepChanges, notesSleepChanges, free, count);
 }
 
 }  // namespace fulcrum
