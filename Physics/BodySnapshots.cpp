@@ -25,6 +25,7 @@ struct SavedBody {
     Remainder remainder;
     Vector3 linear = Vector3::Zero(), angular = Vector3::Zero(), force = Vector3::Zero(), torque = Vector3::Zero();
     float slowSeconds = 0;
+    SlowMotion slowMotion;
     BodyPush lastPush;
     bool isSteady = false;
     SingleMove singleMove = SingleMove::None;
@@ -41,10 +42,12 @@ struct SavedJoint {
 
 template <class Stream>
 void Visit(Stream& s, SavedBody& body) {
-    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds, lastPush, isSteady, singleMove] =
-        body;
+    auto& [id, shape, center, remainder, linear, angular, force, torque, slowSeconds, slowMotion, lastPush, isSteady,
+           singleMove] = body;
+    auto& [lately, before] = slowMotion;
     s(id, shape, center.position, center.rotation, remainder.value, remainder.isGiven, linear, angular, force, torque,
-      slowSeconds, lastPush.force, lastPush.torque, isSteady, singleMove);
+      slowSeconds, lately.linear, lately.angular, before.linear, before.angular, lastPush.force, lastPush.torque,
+      isSteady, singleMove);
 }
 template <class Stream>
 void Visit(Stream& s, SavedJoint& joint) {
@@ -63,6 +66,7 @@ SavedBody Describe(const BodyStore& bodies, BodyId id) {
             cold.force,
             cold.torque,
             bodies.dynamics[id.index].slowSeconds,
+            bodies.slowMotions[id.index],
             cold.lastPush,
             cold.isSteady,
             cold.singleMove};
@@ -128,6 +132,7 @@ void Complete(BodyStore& bodies, const SavedBody& saved) {
     bodies.cold[i].torque = saved.torque;
     bodies.dynamics[i].hasForce = !saved.force.isZero(0) || !saved.torque.isZero(0);
     bodies.dynamics[i].slowSeconds = saved.slowSeconds;
+    bodies.slowMotions[i] = saved.slowMotion;
     bodies.cold[i].lastPush = saved.lastPush;
     bodies.cold[i].isSteady = saved.isSteady;
     if (bodies.dynamics[i].hasForce || !saved.lastPush.IsZero()) bodies.pushed.Insert(i);

@@ -145,8 +145,11 @@ struct BodySettings {
 
 struct SleepSettings {
     bool enabled = true;
-    float seconds = 0.5f;  // >= 0: an island whose bodies have all been slow for this long falls asleep
-    // m/s, >= 0: a body is slow if its fastest point is below this; small bodies below one radius per second.
+    // >= 0: an island whose bodies have all been slow for this long falls asleep, unless one of them accelerates,
+    // drifts or is driven, however slowly (Docs/Architecture.md, Sleep).
+    float seconds = 0.5f;
+    // m/s, >= 0: a body is slow if its fastest point is below this; small bodies below one radius per second. In
+    // uniform motion it must be below a fifth of it.
     float linearSpeed = 0.05f;
 };
 

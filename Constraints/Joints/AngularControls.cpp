@@ -255,9 +255,13 @@ void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, 
         row.error = motion.toTarget[k];
         if (isPosition) continue;
         row.speed = Dot(axis, allowed);
+        row.isStopped = motor.targetSpeed == 0.0f;
         for (const RotationLimit& limit : list) {
-            if (limit.isLocked || limit.error >= -kLimitSlop) continue;
+            if (limit.isLocked) continue;
             const float along = Dot(axis, limit.axis);
+            row.isStopped |=
+                limit.error < kLimitSlop && along * motor.targetSpeed < 0.0f && row.speed != motor.targetSpeed;
+            if (limit.error >= -kLimitSlop) continue;
             if (along < -0.3f) row.maxForce = 0.0f;
             if (along > 0.3f) row.minForce = 0.0f;
         }

@@ -57,6 +57,7 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
     row.speed = motor.targetSpeed;
     row.minForce = motor.minForce;
     row.maxForce = motor.maxForce;
+    row.isStopped = motor.targetSpeed == 0.0f;
     if (!control.limited || !IsHard(control.limits.spring)) return;
     // A motor that works against a hard stop would let both rows' impulses grow without bound. So its target speed is
     // at most what the limit allows: reaching the limit one substep later. Well beyond the limit the motor must not
@@ -65,6 +66,7 @@ void AddMotorRow(const AxisControl& control, const JointRow& motion, double posi
     const float above = static_cast<float>(position - control.limits.min);
     row.speed = std::min(row.speed, std::max(below, -kLimitSlop) / timeToLimit);
     row.speed = std::max(row.speed, -std::max(above, -kLimitSlop) / timeToLimit);
+    row.isStopped |= row.speed != motor.targetSpeed && (motor.targetSpeed > 0.0f ? below : above) < kLimitSlop;
     if (below < -kLimitSlop) row.maxForce = 0.0f;
     if (above < -kLimitSlop) row.minForce = 0.0f;
 }

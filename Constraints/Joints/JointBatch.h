@@ -195,6 +195,7 @@ struct JointSolveSettings {
     float pushRate;
     RowSoftness<float> softness;
     float maxPushSpeed;  // m/s and rad/s
+    float sleepSeconds;  // SleepSettings::seconds, see JointType::quiet
     // The same of locks in trees, which are hard: softness would undo part of the direct solution.
     float treePushRate, maxTreePushSpeed;
     bool pushes;      // false: errors are corrected by position iterations (CorrectJoints), and rows are hard

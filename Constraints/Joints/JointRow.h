@@ -40,6 +40,7 @@ struct JointRow {
     Vector3 ofA = Vector3::Zero(), ofB = Vector3::Zero();  // unit, world: those directions
     bool isLock = false;     // Equal rows, the first of the list, that are solved as one block
     bool inRadians = false;  // C is in rad, although the row moves anchors; else as J says
+    bool isStopped = false;  // a motor without a target speed, or that a limit stops: it drives nothing
     float minForce = -kUnlimited, maxForce = kUnlimited;  // N or N m
     SpringSettings spring;
 };

@@ -147,6 +147,12 @@ public:
     // or N m. Written by the Store stage, as are the rotations of the last step.
     std::array<float, JointRowList::kMaxRows> impulses{}, forces{};
     Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();
+    // Whoever is faster, or accelerates more, may be driven by its motors and springs, and does not sleep. Written by
+    // the Prepare stage of each step.
+    struct Quiet {
+        float speed = JointRow::kUnlimited, acceleration = JointRow::kUnlimited;  // m/s, m/s2
+    };
+    Quiet quiet;
 
 protected:
     // RowsAt of a type that may be copied.

@@ -1,3 +1,4 @@
+#include <Fulcrum/Constraints/Joints/JointDrives.h>
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
 #include <Fulcrum/Constraints/Joints/JointStrain.h>
 #include <Fulcrum/Constraints/Joints/RowErrors.h>
@@ -204,6 +205,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         pose.substepDt = settings.substepDt;
         const BodyPose& a = bodies.poses[batch.bodyA[lane]];
         pose.anchorA = Position(a.position[0], a.position[1], a.position[2]) + pose.armA.cast<double>();
+        types[batch.joint[lane]]->quiet = {};
         types[batch.joint[lane]]->CollectRows(pose, lists[lane]);
         FULCRUM_ASSERT(lists[lane].count <= batch.rowRoom);
         lists[lane].count = std::min(lists[lane].count, batch.rowRoom);  // of a type that adds more than its MaxRows
@@ -233,6 +235,9 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     SetUpRows<kLinear, kAngular>(batch);
     for (int lane = 0; lane < batch.count; ++lane) {
         const bool wasTeleported = batch.secondsOfTeleport[lane] > 0;
+        for (uint32_t i = 0; i < lists[lane].count; ++i)
+            NoteDrive(batch, lane, lists[lane].rows[i], batch.rows[i].part.GetEffectiveMass()[lane], settings,
+                      types[batch.joint[lane]]->quiet);
         for (uint32_t i = 0; i < lists[lane].count; ++i)
             if (SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], wasTeleported, settings))
                 batch.secondsOfTeleport.Set(lane, records[batch.joint[lane]].secondsOfTeleport);

@@ -9,7 +9,7 @@ uint64_t SnapshotFormat() {
     static const uint64_t format = [] {
         uint64_t hash = kHashSeed;
         for (const uint64_t part :
-             {uint64_t{1}, uint64_t{FULCRUM_VERSION}, uint64_t{std::endian::native == std::endian::little},
+             {uint64_t{2}, uint64_t{FULCRUM_VERSION}, uint64_t{std::endian::native == std::endian::little},
               uint64_t{sizeof(SystemSettings)}, uint64_t{sizeof(BodyDynamics)}, uint64_t{sizeof(BodyCold)},
               uint64_t{sizeof(Collider)}, uint64_t{sizeof(Pair)}, uint64_t{sizeof(PairContact)},
               uint64_t{sizeof(ContactRecord)}, uint64_t{sizeof(Joint)}, uint64_t{sizeof(JointRecord)},

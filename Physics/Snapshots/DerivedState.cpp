@@ -18,6 +18,7 @@ void SnapshotAccess::Resize(BodyStore& bodies, uint32_t count) {
     bodies.dynamics.resize(count);
     bodies.cold.resize(count);
     bodies.remainders.resize(count);
+    bodies.slowMotions.resize(count);
 }
 
 void SnapshotAccess::Resize(ColliderStore& colliders, uint32_t count) {

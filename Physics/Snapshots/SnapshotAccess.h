@@ -106,9 +106,9 @@ void SnapshotAccess::VisitHead(Stream& s, SnapshotHead& head) {
 
 template <class Stream, class Bodies>
 void SnapshotAccess::VisitBodies(Stream& s, Bodies& bodies) {
-    auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody, continuousCount,
-           targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges, notesSleepChanges, free, count,
-           placedAsleep] = bodies;
+    auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, slowMotions, placed, awake, worldBody,
+           continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
+           notesSleepChanges, free, count, placedAsleep] = bodies;
     s.Begin(SnapshotSection::Bodies);
     VisitElements(s, bodies.Size(), kMostOfBody,
                   [&](auto& stream, uint32_t i) FULCRUM_FORCE_INLINE_LAMBDA { VisitBody(stream, bodies, i); });

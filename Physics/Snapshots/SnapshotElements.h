@@ -211,6 +211,9 @@ FULCRUM_INLINE_IN_LOOP void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
       position, innerRadius, dynamics, remainder.value, remainder.isGiven);
     if (dynamics.hasForce) s(cold.force, cold.torque);
     else if constexpr (!Stream::kWrites) cold.force = cold.torque = Vector3::Zero();
+    auto& [lately, before] = bodies.slowMotions[i];
+    if (dynamics.awake && dynamics.slowSeconds > 0) s(lately.linear, lately.angular, before.linear, before.angular);
+    else if constexpr (!Stream::kWrites) lately = before = {};
 }
 
 // ---- Colliders

@@ -117,6 +117,7 @@ void Freeze(BodyStore& bodies, const ColliderStore& colliders, uint32_t body, Wo
     if (!d.frozen) NoteStopped(body, findings);
     d.frozen = true;
     d.slowSeconds = 0;
+    bodies.slowMotions[body] = {};
     BringToRest(bodies, body);
     RepairPose(bodies, colliders, body);
     std::fill(std::begin(bodies.poses[body].acceleration), std::end(bodies.poses[body].acceleration), 0.0f);

@@ -137,6 +137,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
         joints.softness = {};
     }
     joints.maxPushSpeed = s.jointPushSpeed;
+    joints.sleepSeconds = s.sleep.seconds;
     joints.continues = joints.firstPass = false;
     return effort;
 }

@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/Stages/FreeRotation.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
+#include <Fulcrum/Physics/Stages/Stillness.h>
 
 #include <algorithm>
 
@@ -107,25 +108,6 @@ void MoveSolved(BodyStore& bodies, const JointStore& joints, Ending& ending, flo
                                    AxesOf(d, rotation), w, dt);
 }
 
-// m/s: slower bodies may fall asleep. For small bodies given in radii per second.
-float SlowSpeed(const SleepSettings& sleep, const BodyDynamics& body) {
-    constexpr float kRadiiPerSecond = 1;
-    return std::min(sleep.linearSpeed, kRadiiPerSecond * body.outerRadius);
-}
-
-// m/s: upper bound of the speed of any point of a body with velocities v and w. By its bounding sphere, or, if that
-// gives `slow` or more, by the corners of its box: a thin rod rotating about its own length hardly moves.
-float FarthestSpeed(const BodyStore& bodies, uint32_t body, float slow, const Vector3& v, const Vector3& w) {
-    const float linear = Length(v), simple = linear + Length(w) * bodies.dynamics[body].outerRadius;
-    if (simple < slow || linear >= slow) return simple;
-    const Bounds& box = bodies.cold[body].shape->LocalBounds();
-    const Vector3 reach = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs());
-    const Vector3 turn = InverseRotate(bodies.RotationOf(body), w).cwiseAbs();
-    const Vector3 most(turn.y() * reach.z() + turn.z() * reach.y(), turn.z() * reach.x() + turn.x() * reach.z(),
-                       turn.x() * reach.y() + turn.y() * reach.x());
-    return std::min(simple, linear + Length(most));
-}
-
 // Speed from the displacement of the step, for bodies moved by joints that are pulled together: neither
 // pseudo-velocities nor relaxed corrections appear in the velocities.
 float PulledSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) {
@@ -162,6 +144,23 @@ bool PushIsFinite(const BodyStore& bodies, uint32_t body) {
     const float* a = bodies.poses[body].acceleration;
     const SymmetricMatrix3 inverse = bodies.masses[body].InverseInertia();
     return IsFinite(Vector3(a[0], a[1], a[2])) && IsFinite(Vector3(inverse * bodies.cold[body].torque));
+}
+
+// Whether a body that nothing holds is accelerated: it moves on, however slowly, although damping may leave it little
+// speed. Forces that balance to a thousandth do not count.
+bool IsPulled(const BodyStore& bodies, uint32_t body, const Vector3& systemGravity) {
+    constexpr float kBalanced = 1e-3f;
+    const BodyDynamics& d = bodies.dynamics[body];
+    const float* a = bodies.poses[body].acceleration;
+    const Vector3 gravity = bodies.GravityOf(body, systemGravity) * d.gravityFactor;
+    float squared = LengthSquared(d.AlongFreeTranslations(Vector3(a[0], a[1], a[2]))), scale = LengthSquared(gravity);
+    if (d.hasForce) {
+        const BodyCold& cold = bodies.cold[body];
+        const Vector3 turn = bodies.masses[body].InverseInertia() * cold.torque * d.outerRadius;
+        squared = std::max(squared, LengthSquared(turn));
+        scale = std::max(scale, LengthSquared(cold.force) * d.inverseMass * d.inverseMass);
+    }
+    return squared > kBalanced * kBalanced * scale;
 }
 
 class BodyMover {
@@ -242,22 +241,29 @@ private:
         if (IsAtRest(bodies_, ending, step_.settings.sleep)) DampSwings(ending, step_.dt);
         findings.clamped += LimitSpeeds(bodies_, body, v, w);
         bodies_.SetVelocity(body, v, w);
+        const Quaternion before = bodies_.RotationOf(body);
         bodies_.MoveCenter(body, ending.displacement, ending.turn.rotation);
         bodies_.ForgetForces(body);
         if (d.motion == MotionType::Dynamic && (step_.settings.sleep.enabled || !ending.isJointed))
-            MeasureSlowness(ending, findings);
+            MeasureSlowness(ending, before, findings);
     }
 
-    void MeasureSlowness(const Ending& ending, WorkerFindings& findings) const {
+    void MeasureSlowness(const Ending& ending, const Quaternion& before, WorkerFindings& findings) const {
         BodyDynamics& d = bodies_.dynamics[ending.body];
         const float speed =
             std::max(FarthestSpeed(bodies_, ending.body, ending.slowSpeed, ending.v, ending.turn.angularVelocity),
                      ending.pulled);
         // Jointed ones keep the velocities with which they are separated.
         const bool isPushed = d.crowded && !joints_.HasAny(ending.body);
-        const bool slow = !isPushed && speed < ending.slowSpeed;
+        const bool slow = !isPushed && speed < ending.slowSpeed &&
+                          !(ending.fliesFreely && IsPulled(bodies_, ending.body, step_.settings.gravity));
+        const bool wasSlow = d.slowSeconds > 0;
         d.slowSeconds = slow ? d.slowSeconds + step_.dt : 0.0f;
         const SleepSettings& sleep = step_.settings.sleep;
+        if (slow) {
+            const SlowMotion::Mean now = MeanVelocity(ending.displacement, before, ending.turn.rotation, step_.dt);
+            Follow(bodies_.slowMotions[ending.body], now, wasSlow, sleep, step_.dt);
+        }
         findings.sleepCandidates += sleep.enabled && d.allowSleep && slow && d.slowSeconds >= sleep.seconds;
     }
 

@@ -23,6 +23,7 @@ uint32_t BodyStore::Allocate() {
         dynamics.emplace_back();
         cold.emplace_back();
         remainders.emplace_back();
+        slowMotions.emplace_back();
         for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable}) set->Reserve(index + 1);
     }
     cold[index].exists = true;
@@ -40,6 +41,7 @@ void BodyStore::Reserve(size_t more, size_t placedMore) {
     ReserveMore(dynamics, grown);
     ReserveMore(cold, grown);
     ReserveMore(remainders, grown);
+    ReserveMore(slowMotions, grown);
     const size_t size = Size() + grown;
     for (IndexSet* set : {&reportsContacts, &pushed, &singleMoves, &editable})
         set->ReserveRoom(static_cast<uint32_t>(size));
@@ -57,6 +59,7 @@ void BodyStore::Free(uint32_t index) {
     masses[index] = {};
     poses[index] = {};
     dynamics[index] = {};
+    slowMotions[index] = {};
     cold[index] = {};
     cold[index].generation = generation;
     placedAsleep_ -= isPlacedAsleep;
@@ -219,12 +222,12 @@ size_t HeapBytes(const BodyCold& body) {
 }
 
 size_t HeapBytes(const BodyStore& store) {
-    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                 continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
+    const auto& [states, masses, poses, unconstrained, dynamics, cold, remainders, slowMotions, placed, awake,
+                 worldBody, continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
                  notesSleepChanges, free, count, placedAsleep] = store;
-    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, placed, awake, worldBody,
-                     continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable, sleepChanges,
-                     notesSleepChanges, free, count, placedAsleep);
+    return HeapBytes(states, masses, poses, unconstrained, dynamics, cold, remainders, slowMotions, placed, awake,
+                     worldBody, continuousCount, targetCount, reportsContacts, pushed, singleMoves, editable,
+                     sleepChanges, notesSleepChanges, free, count, placedAsleep);
 }
 
 }  // namespace fulcrum

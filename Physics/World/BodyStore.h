@@ -223,6 +223,15 @@ struct Remainder {
     bool isGiven = true;  // set by the user, whose positions are coarser far out: dropped when the body moves
 };
 
+// Mean velocities, m/s and rad/s, of a body that has been slow: of its last moments and of somewhat longer, from which
+// follows whether it still accelerates (Stages/Stillness.h). Of bodies with BodyDynamics::slowSeconds alone.
+struct SlowMotion {
+    struct Mean {
+        Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+    };
+    Mean lately, before;
+};
+
 class BodyStore {
 public:
     static constexpr uint32_t kNone = ~0u;
@@ -234,6 +243,7 @@ public:
     Array<BodyDynamics> dynamics;
     Array<BodyCold> cold;
     Array<Remainder> remainders;
+    Array<SlowMotion> slowMotions;
 
     Array<uint32_t> placed;        // see MarkPlaced, in no order
     Array<uint32_t> awake;         // dynamic bodies awake and kinematic ones that move, in no order

@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x6d376592e74fffd2ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x372fbb502c40c28dull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x207484a919c2bcefull;
+constexpr uint64_t kGoldenHash = 0x51f2436e82f15856ull;
+constexpr uint64_t kGoldenHashOfJoints = 0xfccbdeb360892018ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x8f92c15e7641ab4bull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0xeb30a1b513076854ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7e5154f0e956aee3ull;
 
 std::string Hex(uint64_t number) {
     char text[24];

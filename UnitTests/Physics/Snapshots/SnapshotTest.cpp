@@ -554,6 +554,7 @@ TEST(HashState, ChangesWithAllThatMatters) {
              EXPECT_TRUE(world.System().SetSettings(settings));
          }},
         {"slowness", [&] { inside.bodies.dynamics[a.index].slowSeconds += 0.01f; }},
+        {"slow motion", [&] { inside.bodies.slowMotions[a.index].lately.linear[0] += 1e-3f; }},
         {"impulse", [&] { recordOfA().impulse[0] *= 1.001f; }},
         {"friction impulse", [&] { recordOfA().frictionImpulse[0] += 1; }},
         {"load", [&] { inside.pairs.loads[state.pairs.Find(0, a.index)].steps += 1; }},

@@ -1,0 +1,81 @@
+// Which bodies are slow, and whether one that is slow stays so: what still accelerates, or moves on uniformly, does not
+// sleep (Docs/Architecture.md). Used by Store and Sleep; free functions, any thread.
+#pragma once
+
+#include <Fulcrum/Physics/World/BodyStore.h>
+
+#include <algorithm>
+
+namespace fulcrum {
+
+// m/s: slower bodies may fall asleep. For small bodies given in radii per second.
+inline float SlowSpeed(const SleepSettings& sleep, const BodyDynamics& body) {
+    constexpr float kRadiiPerSecond = 1;
+    return std::min(sleep.linearSpeed, kRadiiPerSecond * body.outerRadius);
+}
+
+// m/s: upper bound of the speed of any point of a body with velocities v and w. By its bounding sphere, or, if that
+// gives `slow` or more, by the corners of its box: a thin rod rotating about its own length hardly moves.
+inline float FarthestSpeed(const BodyStore& bodies, uint32_t body, float slow, const Vector3& v, const Vector3& w) {
+    const float linear = Length(v), simple = linear + Length(w) * bodies.dynamics[body].outerRadius;
+    if (simple < slow || linear >= slow) return simple;
+    const Bounds& box = bodies.cold[body].shape->LocalBounds();
+    const Vector3 reach = box.lower.cwiseAbs().cwiseMax(box.upper.cwiseAbs());
+    const Vector3 turn = InverseRotate(bodies.RotationOf(body), w).cwiseAbs();
+    const Vector3 most(turn.y() * reach.z() + turn.z() * reach.y(), turn.z() * reach.x() + turn.x() * reach.z(),
+                       turn.x() * reach.y() + turn.y() * reach.x());
+    return std::min(simple, linear + Length(most));
+}
+
+// The means are exponential, over a sixteenth and a quarter of the time of falling asleep: of the speed that a body had
+// when it became slow, e^-4 is left when it may sleep, 0.9 mm/s of 5 cm/s.
+inline constexpr float kLately = 1.0f / 16, kBefore = 1.0f / 4;
+inline float MeanSeconds(const SleepSettings& sleep, float dt) { return std::max(sleep.seconds, dt); }
+
+// Of a step of dt seconds.
+inline SlowMotion::Mean MeanVelocity(const Vector3& displacement, const Quaternion& from, const Quaternion& to,
+                                     float dt) {
+    const Quaternion turn = to * from.Conjugate();
+    return {displacement * (1 / dt), Vector3(turn.x, turn.y, turn.z) * ((turn.w < 0 ? -2.0f : 2.0f) / dt)};
+}
+
+// Follows the velocity of a step. At constant acceleration a mean over t seconds lags behind by that times t.
+inline void Follow(SlowMotion& motion, const SlowMotion::Mean& now, bool wasSlow, const SleepSettings& sleep,
+                   float dt) {
+    if (!wasSlow) {
+        motion = {now, now};
+        return;
+    }
+    const auto follow = [&](SlowMotion::Mean& mean, float part) {
+        const float gain = dt / (part * MeanSeconds(sleep, dt) + dt);
+        mean.linear += (now.linear - mean.linear) * gain;
+        mean.angular += (now.angular - mean.angular) * gain;
+    };
+    follow(motion.lately, kLately);
+    follow(motion.before, kBefore);
+}
+
+// Of the farthest point, bounds.
+struct Unrest {
+    float speed = 0, acceleration = 0;  // m/s, m/s2
+};
+inline Unrest UnrestOf(const BodyStore& bodies, uint32_t body, const SleepSettings& sleep, float dt) {
+    const auto& [lately, before] = bodies.slowMotions[body];
+    const float change = FarthestSpeed(bodies, body, 0, lately.linear - before.linear, lately.angular - before.angular);
+    return {FarthestSpeed(bodies, body, 0, lately.linear, lately.angular),
+            change / ((kBefore - kLately) * MeanSeconds(sleep, dt))};
+}
+
+// What a body at rest alone on the ground may show. A fifth of the slow speed, 1 cm/s, is the drift that sleep ends.
+// The solver leaves a thousandth of the weight unbalanced; where there is none, the slow speed changes by as much in
+// the time of falling asleep.
+inline Unrest LeastUnrest(const BodyStore& bodies, uint32_t body, const SystemSettings& settings, float dt) {
+    constexpr float kDrift = 0.2f, kUnbalanced = 1e-3f;
+    const BodyDynamics& d = bodies.dynamics[body];
+    const float slow = SlowSpeed(settings.sleep, d);
+    float weight = Length(settings.gravity);
+    if (d.special) weight = std::max(weight, Length(bodies.GravityOf(body, settings.gravity)));
+    return {kDrift * slow, kUnbalanced * std::max(weight, slow / MeanSeconds(settings.sleep, dt))};
+}
+
+}  // namespace fulcrum
