@@ -228,7 +228,7 @@ int PrintVersion() {
     return 0;
 }
 
-int List() {
+int ListScenes() {
     size_t width = 0;
     for (const Scene* scene : AllScenes()) width = std::max(width, std::string(scene->name).size());
     for (SceneKind kind : {SceneKind::Performance, SceneKind::Sample}) {
@@ -259,7 +259,7 @@ int Execute(const Command& command) {
         case CommandKind::Drop: return Drop(command, input, json);
         case CommandKind::Replay: return ReplayFile(command);
         case CommandKind::Shrink: return ShrinkFile(command);
-        case CommandKind::List: return List();
+        case CommandKind::List: return ListScenes();
         case CommandKind::Version: return PrintVersion();
         default: std::printf("%s", command.help.c_str()); return 0;
     }
