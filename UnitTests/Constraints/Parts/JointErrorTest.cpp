@@ -11,6 +11,7 @@ namespace {
 float LengthOf(const Vec2<float>& v) { return std::hypot(v.x(), v.y()); }
 
 using testing::AnyDirection;
+using testing::AnyRotation;
 using testing::MakeBody;
 using testing::RandomBody;
 using testing::RandomPoses;
@@ -31,13 +32,9 @@ struct Body {
     }
 };
 
-Quaternion RandomRotation(RandomPoses& random) {
-    const Vector3 axis = AnyDirection(random);
-    return RotationFromVector(Vector3(axis * random.Between(-kPi, kPi)));
-}
 Body RandomPose(RandomPoses& random) {
     const float a = random.Between(0.5f, 3.0f), b = random.Between(0.5f, 3.0f), c = random.Between(0.5f, 3.0f);
-    return {random.InBox(2.0f), RandomRotation(random), random.Between(0.1f, 2.0f), Vector3(a, b, c)};
+    return {random.InBox(2.0f), AnyRotation(random), random.Between(0.1f, 2.0f), Vector3(a, b, c)};
 }
 Body Immovable(Body body) {
     body.inverseMass = 0.0f;
@@ -117,7 +114,7 @@ TEST(JointError, RotationEulerPartTurnsBackFromAnyRotation) {
     int worst = 0, worstFixed = 0;
     for (int i = 0; i < 300; ++i) {
         const Body a = RandomPose(random), b = RandomPose(random);
-        const Quaternion inverseInitial = RandomRotation(random);
+        const Quaternion inverseInitial = AnyRotation(random);
         worst = std::max(worst, RotationPasses(a, b, inverseInitial));
         worstFixed = std::max(worstFixed, RotationPasses(Immovable(a), b, inverseInitial));
         worstFixed = std::max(worstFixed, RotationPasses(a, Immovable(b), inverseInitial));
@@ -129,7 +126,7 @@ TEST(JointError, RotationEulerPartTurnsBackFromAnyRotation) {
 TEST(JointError, RotationErrorIsTheRotationBackByTheShortWay) {
     RandomPoses random(4);
     for (int i = 0; i < 200; ++i) {
-        const Quaternion q1 = RandomRotation(random), q0 = RandomRotation(random);
+        const Quaternion q1 = AnyRotation(random), q0 = AnyRotation(random);
         const Vector3 axis = AnyDirection(random);
         // In degrees, 180 among them; beyond it the short way is the other way round.
         for (const float degrees : {0.001f, 1.0f, 90.0f, 179.0f, 180.0f, 181.0f, 270.0f, 359.0f}) {
@@ -154,7 +151,7 @@ TEST(JointError, InitialOrientationFromAxesMakesThemMeet) {
     RandomPoses random(5);
     for (int i = 0; i < 300; ++i) {
         // Frames of any orientation, those of half a turn among them, seen from both bodies.
-        Quaternion frame1 = RandomRotation(random), frame2 = RandomRotation(random);
+        Quaternion frame1 = AnyRotation(random), frame2 = AnyRotation(random);
         if (i < 4) frame1 = {i == 0 ? 1.0f : 0.0f, i == 1 ? 1.0f : 0.0f, i == 2 ? 1.0f : 0.0f, i == 3 ? 1.0f : 0.0f};
         const Matrix3 m1 = ToMatrix(frame1), m2 = ToMatrix(frame2);
         const Quaternion expected = frame2 * frame1.Conjugate();
@@ -164,7 +161,7 @@ TEST(JointError, InitialOrientationFromAxesMakesThemMeet) {
         };
         EXPECT_NEAR(alike(xy), 1.0f, 1e-6f);
         // Bodies turned so that the frames meet have no error.
-        const Quaternion q1 = RandomRotation(random), q2 = q1 * frame1 * frame2.Conjugate();
+        const Quaternion q1 = AnyRotation(random), q2 = q1 * frame1 * frame2.Conjugate();
         EXPECT_LT(Length(RotationError<float>(q1, q2, xy)), 3e-6f);
         EXPECT_LT(Length(RotationError<float>(q1, q2, InverseInitialOrientation(q1.Conjugate(), q2.Conjugate()))),
                   1e-6f);
@@ -221,7 +218,7 @@ TEST(JointError, HingeRotationPartAlignsTheAxesFromAnyAngle) {
 TEST(JointError, HingeErrorIsTheAngleBetweenTheAxes) {
     RandomPoses random(7);
     for (int i = 0; i < 200; ++i) {
-        const Matrix3 frame2 = ToMatrix(RandomRotation(random));
+        const Matrix3 frame2 = ToMatrix(AnyRotation(random));
         const Vector3 way = AnyDirection(random);
         const Vector3 across = Normalized(Vector3(way - frame2.z * Dot(way, frame2.z)));
         for (const float angle : {1e-6f, 0.01f, 1.0f, 0.5f * kPi, 3.0f, kPi}) {
@@ -258,7 +255,7 @@ TEST(JointError, HingeJacobianIsTheDerivativeOfTheError) {
 TEST(SymmetricInverse, ActsWhereSomethingCanMove) {
     RandomPoses random(9);
     for (int i = 0; i < 300; ++i) {
-        const Matrix3 axes = ToMatrix(RandomRotation(random));
+        const Matrix3 axes = ToMatrix(AnyRotation(random));
         const float a = random.Between(0.1f, 5.0f), b = i % 2 ? random.Between(0.1f, 5.0f) : 0.0f;
         const SymmetricMatrix3 k = RotatedDiagonal(axes, Vector3(a, b, 0.0f));
         const SymmetricMatrix3 inverse = SymmetricInverse(k);
@@ -277,7 +274,7 @@ TEST(SymmetricInverse, ActsWhereSomethingCanMove) {
 TEST(SymmetricInverse, KeepsItsDigitsBesideAThinAxle) {
     RandomPoses random(10);
     for (int i = 0; i < 300; ++i) {
-        const SymmetricMatrix3 k = RotatedDiagonal(ToMatrix(RandomRotation(random)), Vector3(1.0f, 20000.0f, 1.0f));
+        const SymmetricMatrix3 k = RotatedDiagonal(ToMatrix(AnyRotation(random)), Vector3(1.0f, 20000.0f, 1.0f));
         const Eigen::MatrixXd expected = testing::ToDense(k).inverse();
         EXPECT_LT((testing::ToDense(SymmetricInverse(k)) - expected).norm(), 0.01 * expected.norm());
     }

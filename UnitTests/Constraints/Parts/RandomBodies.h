@@ -15,6 +15,12 @@ namespace fulcrum::testing {
 inline Vector3 AnyDirection(RandomPoses& random) {
     return Normalized(Vector3(random.InBox(1) + Vector3(0.01f, 0.02f, 0.03f)));
 }
+// About any direction by any angle.
+inline Quaternion AnyRotation(RandomPoses& random) {
+    constexpr float kPi = 3.14159265f;
+    const Vector3 axis = AnyDirection(random);
+    return RotationFromVector(Vector3(axis * random.Between(-kPi, kPi)));
+}
 
 struct RandomBody {
     Vector3 position;

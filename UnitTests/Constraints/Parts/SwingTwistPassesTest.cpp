@@ -13,17 +13,13 @@
 namespace fulcrum {
 namespace {
 
-using testing::AnyDirection;
+using testing::AnyRotation;
 using testing::CollectLimits;
 using testing::RandomPoses;
 
 constexpr float kPi = 3.14159265f;
 constexpr float kDegree = kPi / 180.0f;
 
-Quaternion RandomRotation(RandomPoses& random) {
-    const Vector3 axis = AnyDirection(random);
-    return RotationFromVector(Vector3(axis * random.Between(-kPi, kPi)));
-}
 Quaternion Swung(float y, float z, float twist) {
     return RotationFromVector(Vector3(0, y, z)) * RotationFromVector(Vector3(twist, 0, 0));
 }
@@ -35,7 +31,7 @@ struct Joint {
     SwingTwistLimits limits;
 
     Joint(RandomPoses& random, const Quaternion& relative)
-        : frame1(RandomRotation(random)), frame2(Normalized(frame1 * relative)) {
+        : frame1(AnyRotation(random)), frame2(Normalized(frame1 * relative)) {
         for (int k = 0; k < 3; ++k) {
             inverseInertia1[k] = random.Between(0.5f, 3.0f);
             inverseInertia2[k] = random.Between(0.5f, 3.0f);

@@ -14,6 +14,7 @@ namespace fulcrum {
 namespace {
 
 using testing::AnyDirection;
+using testing::AnyRotation;
 using testing::CollectLimits;
 using testing::RandomPoses;
 
@@ -24,10 +25,6 @@ constexpr float kDegree = kPi / 180.0f;
 // The rotation of frame B in frame A: twist first.
 Quaternion Swung(float y, float z, float twist) {
     return RotationFromVector(Vector3(0, y, z)) * RotationFromVector(Vector3(twist, 0, 0));
-}
-Quaternion RandomRotation(RandomPoses& random) {
-    const Vector3 axis = AnyDirection(random);
-    return RotationFromVector(Vector3(axis * random.Between(-kPi, kPi)));
 }
 float Alike(const Quaternion& a, const Quaternion& b) {
     return std::fabs(a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w);
@@ -186,7 +183,7 @@ TEST(SwingLimit, PyramidIsTheDistanceToItsEdge) { ExpectDistances(SwingShape::Py
 TEST(SwingLimit, ConeIsTheAngleBetweenTheAxes) {
     RandomPoses random(4);
     for (int i = 0; i < 500; ++i) {
-        const Quaternion q = RandomRotation(random);
+        const Quaternion q = AnyRotation(random);
         const float angle = Acos(Rotate(q, Vector3(1, 0, 0)).x()), cone = random.Between(0.0f, kPi);
         const RotationLimit limit = ConeLimit(Decompose(q), cone);
         // Acos near 0 and pi is worth the square root of 1e-7.
@@ -207,7 +204,7 @@ TEST(SwingLimit, ErrorsAreContinuousThroughHalfATurn) {
         const float psi = random.Between(-kPi, kPi);
         Vector3 axis = i % 4 < 2 ? Vector3(0, Cos(psi), Sin(psi)) : AnyDirection(random);
         const float step = 2.0f * kPi / 1024.0f;
-        const Quaternion start = i % 4 < 2 ? Quaternion{} : RandomRotation(random);
+        const Quaternion start = i % 4 < 2 ? Quaternion{} : AnyRotation(random);
         float before = 0.0f;
         for (int k = 0; k <= 1024; ++k) {
             const Quaternion q = RotationFromVector(Vector3(axis * (step * static_cast<float>(k)))) * start;
@@ -232,7 +229,7 @@ TEST(SwingLimit, AxesAreTheGradientsOfTheErrors) {
         if (i % 7 == 1) limits.swingZ = {};
         if (i % 7 == 2) limits.swingY = {0, 0};
         if (i % 7 == 3) limits.swingZ = {0, 0};
-        const Quaternion q = RandomRotation(random);
+        const Quaternion q = AnyRotation(random);
         if (i % 7 < 4 && std::fabs(Rotate(q, Vector3(1, 0, 0)).x()) < 0.2f) continue;  // latitudes are poles there
         const Vector3 turn = AnyDirection(random) * 0.005f;
         const RotationLimitList here = CollectLimits(q, limits);
@@ -265,7 +262,7 @@ TEST(SwingLimit, TheAxisLeadsToTheEdge) {
     for (int i = 0; i < 2000; ++i) {
         const SwingShape shape = i % 2 ? SwingShape::Ellipse : SwingShape::Pyramid;
         const SwingTwistLimits limits = RandomSwing(random, shape);
-        const Quaternion q = RandomRotation(random);
+        const Quaternion q = AnyRotation(random);
         const RotationLimitList list = CollectLimits(q, limits);
         const RotationLimit* worst =
             std::min_element(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.error < b.error; });
@@ -308,8 +305,7 @@ TEST(SwingLimit, LockedAndFreeAxes) {
     };
     RandomPoses random(8);
     for (int i = 0; i < 200; ++i) {
-        const Quaternion q =
-            i % 3 == 0 ? Swung(kPi * Cos(float(i)), kPi * Sin(float(i)), 1.0f) : RandomRotation(random);
+        const Quaternion q = i % 3 == 0 ? Swung(kPi * Cos(float(i)), kPi * Sin(float(i)), 1.0f) : AnyRotation(random);
         const Vector3 d = Rotate(q, Vector3(1, 0, 0));
         EXPECT_EQ(list(q, free, free).count, 0);
         // Both locked: turned by -C along both axes, x is where it was, from any angle.
