@@ -106,7 +106,7 @@ struct NewBody {
 void Include(Additions& more, const ColliderStore& colliders, const BodySettings& settings) {
     const uint32_t count = ColliderCountOf(*settings.shape);
     ++more.bodies;
-    ++more.placed;
+    more.placed += settings.motion == MotionType::Kinematic ? 2 : 1;  // listed as it is placed, and as it wakes
     more.sensors += settings.isSensor;
     more.colliders += colliders.HasFree(count) ? 0 : count;
     more.InTree(settings.motion != MotionType::Static, settings.isSensor) += count;

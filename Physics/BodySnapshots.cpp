@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/Snapshots/Snapshots.h>
 #include <Fulcrum/Physics/Validation.h>
 #include <Fulcrum/Physics/World/Reservations.h>
+#include <Fulcrum/Physics/World/ShapeEdits.h>
 #include <Fulcrum/Physics/World/Teleports.h>
 #include <Fulcrum/Physics/World/Velocities.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
@@ -146,6 +147,7 @@ Status PhysicsSystem::SaveBodies(std::span<const BodyId> bodies, std::vector<std
     const DefaultFloats floats;
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return *alone.Refusal();
+    HeedShapeEdits(*world_);
     for (const BodyId id : bodies)
         if (!world_->bodies.Find(id)) return Unknown(id);
     SnapshotWriter s(bytes, snapshots_->blocks, true);

@@ -59,6 +59,7 @@ Status PhysicsSystem::Update(double dt) {
 }
 
 void PhysicsSystem::Optimize() const {
+    const DefaultFloats floats;
     const WorldLock::Exclusive alone(world_->lock);
     if (alone.Refusal()) return ReportMisuse(*alone.Refusal());
     ColliderStore& colliders = world_->colliders;

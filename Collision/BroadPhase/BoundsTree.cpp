@@ -282,6 +282,9 @@ void BoundsTree::Clear() {
 void BoundsTree::Reserve(size_t ids) {
     if (ids > places_.size()) places_.resize(ids, kNowhere);
     gathered_.reserve(ids);
+    // Each part of more than 2048 leaves adds two at most. Their sizes halve, and every third is a node's: fewer than
+    // 2 + 2 * (1 + 1/2 + ...) * 3/2 ids / 2048 parts, twice as many where halves are not equal.
+    parts_.reserve(2 + ids / 128);
     // Nodes of eight, the nodes above them, and those on the ways to nodes that are not full.
     nodes_.reserve(ids / kWidth + ids / (kWidth * (kWidth - 2)) + 2 * kMaxDepth);
 }

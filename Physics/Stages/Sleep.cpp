@@ -66,13 +66,13 @@ void FindWhatStaysAwake(const StepContext& step, const SleepStores& stores, cons
             awake[roots[i]] = 1;
             continue;
         }
-        // Errors of contacts that are independent of one another add up as the root of their number.
+        // Errors of contacts that are independent of one another add up as the root of their number. Of the speed no
+        // more than twice is taken for errors: bodies that touch and drift through space do not sleep above 2 cm/s.
         const float noise = std::sqrt(rest.contacts);
-        const Unrest shown = UnrestOf(bodies, body, sleep, step.dt),
-                     least = LeastUnrest(bodies, body, step.settings, step.dt);
-        if (shown.speed > std::min(least.speed * noise, rest.quiet.speed) ||
-            shown.acceleration > std::min(least.acceleration * noise, rest.quiet.acceleration))
-            awake[roots[i]] = 1;
+        const Unrest least = LeastUnrest(bodies, body, step.settings, step.dt);
+        const Unrest most{std::min(least.speed * std::min(noise, 2.0f), rest.quiet.speed),
+                          std::min(least.acceleration * noise, rest.quiet.acceleration)};
+        if (IsRestless(bodies, body, most, sleep, step.dt)) awake[roots[i]] = 1;
     }
 }
 

@@ -59,11 +59,12 @@ inline void Follow(SlowMotion& motion, const SlowMotion::Mean& now, bool wasSlow
 struct Unrest {
     float speed = 0, acceleration = 0;  // m/s, m/s2
 };
-inline Unrest UnrestOf(const BodyStore& bodies, uint32_t body, const SleepSettings& sleep, float dt) {
+inline bool IsRestless(const BodyStore& bodies, uint32_t body, const Unrest& most, const SleepSettings& sleep,
+                       float dt) {
     const auto& [lately, before] = bodies.slowMotions[body];
-    const float change = FarthestSpeed(bodies, body, 0, lately.linear - before.linear, lately.angular - before.angular);
-    return {FarthestSpeed(bodies, body, 0, lately.linear, lately.angular),
-            change / ((kBefore - kLately) * MeanSeconds(sleep, dt))};
+    const float change = most.acceleration * (kBefore - kLately) * MeanSeconds(sleep, dt);
+    return FarthestSpeed(bodies, body, most.speed, lately.linear, lately.angular) > most.speed ||
+           FarthestSpeed(bodies, body, change, lately.linear - before.linear, lately.angular - before.angular) > change;
 }
 
 // What a body at rest alone on the ground may show. A fifth of the slow speed, 1 cm/s, is the drift that sleep ends.

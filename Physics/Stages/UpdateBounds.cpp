@@ -93,8 +93,11 @@ void UpdateTrees(ColliderStore& store, JobSystem& jobs) {
     }
     // Each collider that moved searches both trees, as far as it is not static itself.
     const uint32_t searches = static_cast<uint32_t>(store.moved.size());
-    store.movingTree.Optimize(searches, LoopOn(jobs));
-    store.staticTree.Optimize(searches, LoopOn(jobs));
+    for (BoundsTree* tree : {&store.movingTree, &store.staticTree}) {
+        // For the rebuild, which may come in any later step.
+        if (tree->IsMostlyPending()) tree->Reserve(store.colliders.capacity());
+        tree->Optimize(searches, LoopOn(jobs));
+    }
 }
 
 }  // namespace

@@ -47,8 +47,8 @@ void BodyStore::Reserve(size_t more, size_t placedMore) {
         set->ReserveRoom(static_cast<uint32_t>(size));
     ReserveRoom(awake, size);
     ReserveMore(placed, placedAsleep_ + placedMore);
-    // Two for a body that falls asleep again.
-    if (notesSleepChanges) ReserveMore(sleepChanges, size - awake.size() + 2);
+    // Two for a new body that is awake, and for one that falls asleep again.
+    if (notesSleepChanges) ReserveMore(sleepChanges, size - awake.size() + more + 2);
 }
 
 void BodyStore::Free(uint32_t index) {
@@ -98,7 +98,8 @@ void BodyStore::ForgetPlaced() {
     }
     placed.clear();
     constexpr size_t kMostKept = 64;  // capacity: levels are created once
-    if (placed.capacity() > kMostKept) placed = {};
+    // Room for those that sleep is asked for by every change of the world.
+    if (placed.capacity() > std::max(kMostKept, 2 * size_t{placedAsleep_ + 2})) placed = {};
 }
 
 void BodyStore::UnmarkPlaced(uint32_t index) {

@@ -55,7 +55,6 @@ void ForgetManifoldsInside(WorldState& world, uint32_t collider, const Bounds& c
 void HeedEditsOf(WorldState& world, uint32_t body, uint64_t since) {
     const HeightField& field = FieldOf(world.bodies, body);
     world.bodies.SetRadii(body, field);
-    world.bodies.MarkPlaced(body);
     if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
     VisitColliders(world, body, [&](uint32_t index) {
         UpdateBoundsOf(world, body, index);
@@ -65,7 +64,10 @@ void HeedEditsOf(WorldState& world, uint32_t body, uint64_t since) {
         field.VisitEditsSince(since, [&](const Bounds& box) {
             const Bounds changed = FatBoundsOf(box, world.settings, field, pose);
             ForgetManifoldsInside(world, index, changed);
-            if (!world.colliders.colliders[index].sensor) WakeInside(world, changed);
+            if (world.colliders.colliders[index].sensor) return;
+            WakeInside(world, changed);
+            for (const uint32_t inside : world.sleeping.inside)
+                if (world.bodies.dynamics[inside].motion == MotionType::Dynamic) world.bodies.MarkPlaced(inside);
         });
     });
 }
@@ -81,7 +83,7 @@ bool AreShapesEditedSince(const BodyStore& bodies, uint64_t version) {
 
 void HeedShapeEditsUntil(WorldState& world, uint64_t latest) {
     // Before anything is changed: the call that heeds the edits may not take place.
-    ReserveForChange(world, {.placed = world.bodies.editable.Size()});
+    ReserveForChange(world, {.placed = world.bodies.Count()});
     if (!world.sensors.IsEmpty()) ReserveMore(world.sensors.changed, world.bodies.editable.Size());
     const uint64_t since = std::exchange(world.heededShapeVersion, latest);
     world.bodies.editable.Visit([&](uint32_t body) {
