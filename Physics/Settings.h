@@ -149,7 +149,7 @@ struct SleepSettings {
     // drifts or is driven, however slowly (Docs/Architecture.md, Sleep).
     float seconds = 0.5f;
     // m/s, >= 0: a body is slow if its fastest point is below this; small bodies below one radius per second. In
-    // uniform motion it must be below a fifth of it.
+    // uniform motion it must be below a fifth of it, among bodies that touch below two fifths.
     float linearSpeed = 0.05f;
 };
 
