@@ -59,6 +59,7 @@ const std::set<std::string> kComputeNothing = {
     "MutableCompound::Copy",
     "MutableCompound::Exists",
     "MutableCompound::IdOf",
+    "MutableCompound::Reserve",
     "SurfaceShape::Materials",
     "SurfaceShape::CastRays",
     "TriangleMesh::HasSourceTriangles",

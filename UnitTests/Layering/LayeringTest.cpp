@@ -58,9 +58,9 @@ const std::array<std::string, 13> kSharedHeaders = {
 
 const std::array<std::string, 5> kLibraryFolders = {"Math", "Jobs", "Collision", "Constraints", "Physics"};
 
-// Jobs does not include Math/Wide.h, and a spin loop needs the processor's pause hint: this file may test the
-// architecture.
-const std::string kPauseHintFile = "Jobs/Spin.h";
+// These may test the architecture beside Math/Wide.h: a spin loop needs the processor's pause hint, and each processor
+// has its own register of the floating-point environment.
+const std::array<std::string, 2> kArchitectureFiles = {"Jobs/Spin.h", "Math/FloatEnvironment.h"};
 // The one place of dense matrices; no public header needs it.
 const std::string kEigenFile = "Constraints/Joints/JointTree.h";
 
@@ -172,7 +172,8 @@ private:
             R"(\w*mmintrin\.h|arm_neon\.h|__(AVX|SSE|ARM_NEON|FMA|x86_64|i386|aarch64|wasm)\w*|\b_mm\w*_)");
         if (name == "Math/Wide.h" || folder == "UnitTests") return;
         std::smatch match;
-        if (std::regex_search(line, match, pattern) && !(name == kPauseHintFile && IsArchitectureName(match.str())))
+        if (std::regex_search(line, match, pattern) &&
+            !(Contains(kArchitectureFiles, name) && IsArchitectureName(match.str())))
             violations_.push_back(place + match.str() + " outside Math/Wide.h");
     }
 
