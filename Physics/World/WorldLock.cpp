@@ -248,11 +248,9 @@ void WorldLock::Scope::EndBeforeInner() {
 WorldLock::Shared::Shared(WorldLock& lock, Access access) : Shared(lock, access, OfThisThread(lock)) {
     if (!refusal_) refusal_ = lock.RefusalOfBroken();
 }
-WorldLock::Shared::Shared(WorldLock& lock, Access access, Access before) : Scope(lock, NestedReads(before, access)) {
-    if (before != Access::None) {
-        refusal_ = fulcrum::RefusalOfReading(before, access);
-        return;
-    }
+WorldLock::Shared::Shared(WorldLock& lock, Access access, Access before)
+    : Scope(lock, NestedReads(before, access)), refusal_(fulcrum::RefusalOfReading(before, access)) {
+    if (before != Access::None) return;
     taken_ = access;
     lock_.state_->EnterAsReader(access == Access::Queries);
 }
@@ -261,11 +259,8 @@ WorldLock::Exclusive::Exclusive(WorldLock& lock, Access access) : Exclusive(lock
     if (!refusal_) refusal_ = lock.RefusalOfBroken();
 }
 WorldLock::Exclusive::Exclusive(WorldLock& lock, Access access, Access before)
-    : Scope(lock, NestedChanges(before, access)) {
-    if (before != Access::None) {
-        refusal_ = fulcrum::RefusalOfChanging(before);
-        return;
-    }
+    : Scope(lock, NestedChanges(before, access)), refusal_(fulcrum::RefusalOfChanging(before)) {
+    if (before != Access::None) return;
     taken_ = access;
     lock_.state_->EnterAsWriter();
 }
