@@ -13,7 +13,7 @@ namespace {
 
 // What the bodies of an island may show of unrest and yet sleep.
 struct IslandRest {
-    float contacts = 1;  // among its bodies
+    float constraints = 1;  // contacts and joints among its bodies
     JointType::Quiet quiet;
     bool isMoved = false;  // by what is no part of it: a kinematic body, a moving surface
 };
@@ -30,7 +30,7 @@ void FindRests(const StepContext& step, const SleepStores& stores, const PairSto
         const Pair& pair = pairs.pairs[index];
         if (!pair.touching || !bodies.dynamics[pair.bodyA].awake) return;
         IslandRest& rest = restOf(pair.bodyA);
-        if (!pair.fixedB) rest.contacts += 1;
+        if (!pair.fixedB) rest.constraints += 1;
         rest.isMoved |= isMovingKinematic(pair.bodyB) ||
                         (step.listener && pairs.RecordOf(pair).Has(ContactRecord::kSurfaceVelocity));
     });
@@ -40,6 +40,7 @@ void FindRests(const StepContext& step, const SleepStores& stores, const PairSto
             if (!bodies.dynamics[member].awake) continue;
             IslandRest& rest = restOf(member);
             rest.isMoved |= isMovingKinematic(entry.bodyA) || isMovingKinematic(entry.bodyB);
+            if (!entry.fixedA && !entry.fixedB) rest.constraints += 1;
             const JointType& type = *stores.joints.types[entry.constraint];
             if (type.MaxRows() == 0) continue;
             rest.quiet.speed = std::min(rest.quiet.speed, type.quiet.speed);
@@ -66,9 +67,9 @@ void FindWhatStaysAwake(const StepContext& step, const SleepStores& stores, cons
             awake[roots[i]] = 1;
             continue;
         }
-        // Errors of contacts that are independent of one another add up as the root of their number. Of the speed no
-        // more than twice is taken for errors: bodies that touch and drift through space do not sleep above 2 cm/s.
-        const float noise = std::sqrt(rest.contacts);
+        // Errors of constraints that are independent of one another add up as the root of their number. Of the speed
+        // no more than twice is taken for errors: bodies that drift through space together do not sleep above 2 cm/s.
+        const float noise = std::sqrt(rest.constraints);
         const Unrest least = LeastUnrest(bodies, body, step.settings, step.dt);
         const Unrest most{std::min(least.speed * std::min(noise, 2.0f), rest.quiet.speed),
                           std::min(least.acceleration * noise, rest.quiet.acceleration)};

@@ -44,7 +44,7 @@ TEST(Water, LightBallsFloatAndHeavyOnesSink) {
     Fields sea{.waters = {Water{}}};
     const BodyId light = world.Add({.shape = SphereOf(0.5f), .position = {0, -2, 0}, .density = 500});
     const BodyId heavy = world.Add({.shape = SphereOf(0.5f), .position = {3, 1, 0}, .density = 1500});
-    Sail(world, sea, 20);
+    Sail(world, sea, 60);
     EXPECT_NEAR(world.PositionOf(light).y(), 0, 0.01);  // asleep, see above
     EXPECT_NEAR(world.PositionOf(heavy).y(), -4.5, 0.005);
     EXPECT_FALSE(world.Bodies().IsAwake(light));
