@@ -44,24 +44,36 @@ unknown_option() { fail "unknown option '$1' of $2; the nearest is '$(nearest "$
 
 # A word an option: its name, then what it takes. Nothing: a flag. N:LEAST:MOST and X:LEAST:MOST: a number, whole or not; NN: several
 # whole ones with commas; ONE:a,b: one of these; KINDS: of recordings; PART, TIME: an error, a cost;
-# FILE: a file that is there; WRITE: one that is written; TEXT; MANY: all words up to
-# the next option.
-solver_options=(--preset=ONE:fast,balanced,accurate,reference --substeps=N:1:255 --velocity-iterations=N:1:255
-    --position-iterations=N:0:255 --position-correction=ONE:soft,baumgarte --narrow-phase=ONE:automatic,libccd --seed=N:0:18446744073709551615)
+# FILE: a file that is there; WRITE: one that is written; TEXT; MANY: all words up to the next option. Behind @ stands what the program calls
+# the value, where that does not follow.
+solver_options=(--preset=ONE:fast,balanced,accurate,reference@PRESET --substeps=N:1:255 --velocity-iterations=N:1:255
+    --position-iterations=N:0:255 --position-correction=ONE:soft,baumgarte@KIND --narrow-phase=ONE:automatic,libccd@METHOD
+    --seed=N:0:18446744073709551615)
 run_options=(--steps=N:1:10000000 --seconds=X:0.001:1e+06 --dt=X:1e-05:1 --threads=N:1:64 --errors --record=KINDS --json=WRITE
-    --calls=WRITE --out=TEXT --quiet "${solver_options[@]}")
+    --calls=WRITE --out=TEXT@DIR --quiet "${solver_options[@]}")
 options_of() {
     case $1 in
         run) options=("${run_options[@]}") ;;
-        drop) options=(--count=N:1:20000 --onto=FILE --onto-scale=X:1e-06:1e+06 --onto-up=ONE:x,y,z,-x,-y,-z "${run_options[@]}") ;;
+        drop) options=(--count=N:1:20000 --onto=FILE --onto-scale=X:1e-06:1e+06 --onto-up=ONE:x,y,z,-x,-y,-z@AXIS "${run_options[@]}") ;;
         replay) options=(--threads=N:1:64) ;;
-        shrink) options=(--speed=X:0:1e+09 --below=X:-1e+09:1e+09 --differs --crashes --out=TEXT --threads=N:1:64) ;;
-        bench) options=(--scene=MANY --threads=NN:1:64 --steps=N:1:10000000 --dt=X:1e-05:1 --runs=N:1:1000 --only-timed --json=WRITE
-            --save=WRITE --baseline=FILE --tolerance=TEXT --history=MANY --peer=ONE:bullet --quiet "${solver_options[@]}") ;;
-        accuracy) options=(--scene=TEXT --without=TEXT --quick --threads=N:1:64 --out=TEXT --resume --peer=ONE:bullet --table=TEXT --once --save=WRITE
-            --baseline=FILE --soak --recordings --record=TEXT --targets --commit=TEXT) ;;
-        advise) options=(--error=PART --budget=TIME --out=TEXT) ;;
+        shrink) options=(--speed=X:0:1e+09 --below=X:-1e+09:1e+09 --differs --crashes --out=TEXT@FILE --threads=N:1:64) ;;
+        bench) options=(--scene=MANY@SCENE... --threads=NN:1:64 --steps=N:1:10000000 --dt=X:1e-05:1 --runs=N:1:1000 --only-timed --json=WRITE
+            --save=WRITE --baseline=FILE --tolerance=TEXT@PERCENT --history=MANY@FILE... --peer=ONE:bullet@ENGINE --quiet "${solver_options[@]}") ;;
+        accuracy) options=(--scene=TEXT@SCENE --without=TEXT@SCENE,... --quick --threads=N:1:64 --out=TEXT@DIR --resume --peer=ONE:bullet@ENGINE
+            --table=TEXT@FILE --once --save=WRITE --baseline=FILE --soak --recordings --record=TEXT@SETTING --targets --commit=TEXT) ;;
+        advise) options=(--error=PART --budget=TIME --out=TEXT@DIR) ;;
         *) options=() ;;
+    esac
+}
+
+# word_of WHAT: what the program calls such a value.
+word_of() {
+    case $1 in
+        *@*) echo "${1##*@}" ;;
+        NN:*) echo N,... ;;
+        PART) echo ERROR ;;
+        WRITE) echo FILE ;;
+        *) echo "${1%%:*}" ;;
     esac
 }
 
@@ -148,12 +160,13 @@ parse() {
         given+=("$name")
         [[ $spec == *=* ]] || continue
         if [[ $argument == *=* ]]; then value=${argument#*=}; else
-            (($# > 0)) || fail "$name: 1 required ${spec#*=} missing$hint"
+            (($# > 0)) || fail "$name: 1 required $(word_of "${spec#*=}") missing$hint"
             value=$1
             shift
         fi
-        check_value "$name" "$value" "${spec#*=}"
-        [[ $spec == *=MANY ]] || continue
+        spec=${spec#*=}
+        check_value "$name" "$value" "${spec%@*}"
+        [[ $spec == MANY@* ]] || continue
         many+=("$name:$value")
         while (($# > 0)) && [[ $1 != -* ]]; do
             many+=("$name:$1")

@@ -5,13 +5,18 @@ jobs_running=()
 # What ended jobs have taken, in milliseconds of processors.
 spent=0
 
-# stop_jobs SIGNAL: for traps. Ends the jobs, waits for them, and dies of the signal, as who sent it expects. Ninja gives the signal on to
-# compilers, which it runs in groups of their own.
-stop_jobs() {
+# For traps: ends the jobs and waits for them.
+end_jobs() {
     local job
     trap '' INT TERM HUP
     for job in "${jobs_running[@]}"; do kill -TERM -- "-$job" 2>/dev/null; done
     for job in "${jobs_running[@]}"; do wait "$job" 2>/dev/null; done
+}
+
+# stop_jobs SIGNAL: for traps. Ends the jobs and dies of the signal, as who sent it expects. Ninja gives the signal on to
+# compilers, which it runs in groups of their own.
+stop_jobs() {
+    end_jobs
     [[ ! -t 2 ]] || printf '\r\033[K' >&2
     [[ $BASHPID != "$$" ]] || echo "fulcrum: stopped" >&2
     trap - "$1" EXIT
@@ -21,6 +26,8 @@ stop_with_jobs() {
     local signal
     # shellcheck disable=SC2064
     for signal in INT TERM HUP; do trap "stop_jobs $signal" "$signal"; done
+    # Whatever else ends the script, a failure or its last line.
+    trap end_jobs EXIT
 }
 
 # start_job LOG COMMAND...: in the background, its number in `job`. What it took is in LOG.seconds when it has ended: "user system".
@@ -88,15 +95,16 @@ logged() {
     end_job "$log"
 }
 
-# lock FOLDER: until the script ends or unlocks it, nobody else is at work in build/FOLDER. Whoever waits is told for whom. Jobs do not
-# hold locks: what they leave behind, as servers of compilers are, does not hold others up.
+# lock FOLDER: until the script ends or unlocks it, nobody else is at work in build/FOLDER. Whoever waits is told for whom, and can be
+# ended. Who has the lock may ask again. Jobs do not hold locks: what they leave behind, as servers of compilers are, does not hold others up.
 declare -A locks=()
 lock() {
+    [[ -z ${locks[$1]:-} ]] || return 0
     local number file=$root/build/.$1.lock
     mkdir -p "$root/build" && exec {number}<>"$file" || fail "cannot write in $root/build"
     if ! flock -n "$number"; then
         echo "fulcrum: waiting for another ./fulcrum that is at work in build/$1 (process $(<"$file"))" >&2
-        flock "$number"
+        until flock -n "$number"; do sleep 0.3; done
     fi
     locks[$1]=$number
     echo "$$" >"$file"

@@ -52,7 +52,7 @@ print_times() {
     local suite seconds name share sum=0
     echo "Slowest tests, by the clock:"
     for suite in "${suites_run[@]}"; do
-        times_in "$logs/test-$suite.log" | sed "s/\$/  ($suite)/"
+        [[ ! -f $logs/test-$suite.log ]] || times_in "$logs/test-$suite.log" | sed "s/\$/  ($suite)/"
     done | sort -rn | head -n 12 | awk '{ ms = $1; $1 = ""; printf "%7.1f s %s\n", ms / 1000, $0 }'
     echo "Suites, in seconds of processors, and their shares where they take more:"
     while read -r seconds name; do
@@ -163,7 +163,6 @@ web_suite() {
 
 # What must give the same bits, by a cross compiler, in an emulator.
 aarch64_suite() {
-    require "${build_requirements[@]}" "${aarch64_requirements[@]}"
     build_or_count aarch64 aarch64 aarch64 -DFULCRUM_BUILD_TESTS=ON FulcrumParityTests || return
     gtest_suite aarch64 aarch64 FulcrumParityTests '*' qemu-aarch64 -L /usr/aarch64-linux-gnu
 }
@@ -187,10 +186,11 @@ programs_suites() {
     ((quick)) || viewer_suite
 }
 
-# Suites that leave cores idle run beside the builds that follow: without progress; their lines are printed at the end.
+# Suites that leave cores idle run beside the builds that follow: their lines are printed at the end, their progress only where they
+# did not come to their totals.
 beside=''
 start_beside() {
-    rm -f "$logs/beside.totals"
+    rm -f "$logs"/beside.*
     set -m
     (
         set +m
@@ -198,7 +198,7 @@ start_beside() {
         stop_with_jobs
         "$@"
         echo "$passed $failed $skipped" >"$logs/beside.totals"
-    ) >"$logs/beside.out" 2>/dev/null </dev/null &
+    ) >"$logs/beside.out" 2>"$logs/beside.errors" </dev/null &
     beside=$!
     set +m
     jobs_running+=("$beside")
@@ -208,8 +208,13 @@ finish_beside() {
     : >"$logs/beside.progress"
     show_progress "Running what is left of programs, lab and viewer" "$logs/beside.progress" "$beside"
     wait "$beside"
+    jobs_running=()
     cat "$logs/beside.out"
-    [[ ! -f $logs/beside.totals ]] || read -r more_passed more_failed more_skipped <"$logs/beside.totals"
+    if [[ -f $logs/beside.totals ]]; then
+        read -r more_passed more_failed more_skipped <"$logs/beside.totals"
+    else
+        cat "$logs/beside.errors" >&2
+    fi
     passed=$((passed + more_passed)) failed=$((failed + more_failed)) skipped=$((skipped + more_skipped))
 }
 
@@ -246,16 +251,22 @@ run_all_tests() {
         esac
     done
     mkdir -p "$logs"
+    # Asked for first: what is missing ends the command, in the midst of other suites if it came then.
+    if ((aarch64)); then
+        require "${build_requirements[@]}" "${aarch64_requirements[@]}"
+    else
+        require "${build_requirements[@]}" "${test_requirements[@]}"
+        ((quick)) || require "${web_requirements[@]}"
+    fi
     lock test
     local passed=0 failed=0 skipped=0 counted=0 suites_run=()
     spent=0 SECONDS=0
-    rm -f "$logs/seconds"
+    rm -f "$logs/seconds" "$logs"/test-*.log*
     ((!all)) || export FULCRUM_ALL_TESTS=1
     if ((aarch64)); then
         aarch64_suite
         suites_run=(aarch64)
     else
-        require "${build_requirements[@]}" "${test_requirements[@]}"
         if build_or_count release release release "-DFULCRUM_BUILD_TESTS=ON$strict" all; then
             gtest_suite release release FulcrumTests '*' env
             gtest_suite accuracy release FulcrumAccuracyTests '*' env

@@ -5,6 +5,8 @@
 #include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 
+#include <cmath>
+
 namespace fulcrum::joints {
 
 // Velocities or displacements of one body per lane.

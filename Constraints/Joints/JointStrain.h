@@ -3,6 +3,7 @@
 // (Stages/JointTrees.h). Free functions over lanes, no state.
 #pragma once
 
+#include <Fulcrum/Constraints/Parts/BodySide.h>
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 
 namespace fulcrum::joints {

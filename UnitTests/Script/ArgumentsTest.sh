@@ -97,6 +97,9 @@ for verb in run drop replay shrink bench accuracy advise; do
     options_of $verb
     known=$(printf '%s\n' "${options[@]%%=*}" | sort -u)
     has=$(program $verb --help | sed -nE 's/^ +(-h,)?(--[a-z-]+).*/\2/p' | grep -vx -- --help | sort -u)
+    for option in "${options[@]}"; do
+        [[ $option != *=* ]] || refuses $verb "${option%%=*}"
+    done
     [[ $known == "$has" ]] || fail_test "options of $verb, script < and program >: $(diff <(echo "$known") <(echo "$has"))"
 done
 [[ $(scene_names | sort) == $("$bin/fulcrum-runner" list | sed -nE 's/^  ([a-z0-9_]+) .*/\1/p' | sort) ]] ||

@@ -51,26 +51,23 @@ export WORK=$work PATH=$work/tools:$PATH
 printf 'require() { :; }\n' >>Scripts/Jobs.sh
 sed -i '/^require() {/,/^}/d' fulcrum
 
-# start NAME: a run in the background, its process in `script`.
+# start NAME: a run in the background, its process in `script`. It heeds signals although what a shell starts there ignores SIGINT, and
+# whatever this test was started with.
 start() {
-    ./fulcrum run pyramid >"said.$1" 2>&1 &
+    env --default-signal=INT,TERM,HUP ./fulcrum run pyramid >"said.$1" 2>&1 &
     script=$!
 }
 has_begun() { [[ $(grep -c 'ninja begins' calls 2>/dev/null) == "$1" ]]; }
+is_gone() { ! kill -0 -- "$1" 2>/dev/null; }
 are_gone() {
     local process
-    for process in $(cat processes); do
-        ! kill -0 "$process" 2>/dev/null || return 1
-    done
+    for process in $(cat processes); do is_gone "$process" || return 1; done
 }
 
 # Ended by each signal, with whatever it has started.
 begun=0
 for signal in TERM HUP INT; do
-    # A script in the background ignores SIGINT from its beginning, unless it is a job of a shell with job control.
-    set -m
     start $signal
-    set +m
     begun=$((begun + 1))
     eventually has_begun $begun
     kill -s $signal "$script"
@@ -90,13 +87,36 @@ eventually has_begun 4
 start second
 eventually grep -q "waiting for another ./fulcrum that is at work in build/release (process $first)" said.second
 has_begun 4 || fail_test "two build at once"
+# Another that waits can be ended meanwhile.
+second=$script
+start waits
+eventually grep -q 'waiting for another' said.waits
+kill "$script"
+eventually is_gone "$script"
 touch go
 wait "$first" || fail_test "the first fails: $(cat said.first)"
-wait "$script" || fail_test "the second fails: $(cat said.second)"
+wait "$second" || fail_test "the second fails: $(cat said.second)"
 has_begun 5 || fail_test "the second did not build"
 grep -qx 'runs run pyramid' said.second || fail_test "the second says: $(cat said.second)"
 [[ $(sed -n '/ninja/p' calls | tail -n 4 | tr '\n' ' ') == 'ninja begins ninja ends ninja begins ninja ends ' ]] ||
     fail_test "builds overlap: $(cat calls)"
+
+# What is configured while another waits is what it then builds: no tests are taken from a build that has them.
+exec 9<>build/.release.lock
+flock 9
+rm build/release/.fulcrum-options
+configured=$(grep -c cmake calls)
+start third 9>&-
+eventually grep -q 'waiting for another' said.third
+echo 'release -DFULCRUM_BUILD_TESTS=ON' >build/release/.fulcrum-options
+exec 9>&-
+wait "$script" || fail_test "the third fails: $(cat said.third)"
+[[ $(grep -c cmake calls) == "$configured" ]] || fail_test "it configures anew: $(cat calls)"
+
+# A script that fails leaves no job behind, either.
+bash -c 'source Scripts/Jobs.sh; stop_with_jobs; start_job said.job sleep 1000; echo "$job"; sleep 0.3; exit 3' >job
+[[ $? == 3 ]] || fail_test "the status of a script with jobs is lost"
+is_gone "-$(<job)" || fail_test "a job is left behind"
 
 # The first half minute is not silent: it says what it does while it does it.
 grep -q 'The first build takes' said.TERM || fail_test "a first run says: $(cat said.TERM)"

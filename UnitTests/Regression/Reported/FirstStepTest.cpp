@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <thread>
 #include <vector>
 
@@ -58,24 +57,6 @@ TEST(FirstQuery, FindsTheTreesInOrder) {
         EXPECT_TRUE(cast.System().Queries().CastRay({{0.2, 5, 0.3}, {0, -10, 0}}, hit));
         EXPECT_EQ(treeOf(cast).Cost(), after);
     }
-}
-
-// All at once: one of them builds the trees, the others wait for it.
-TEST(FirstQuery, MayComeFromSeveralThreads) {
-    TestWorld world, one;
-    AddLayer(world, MotionType::Dynamic);
-    AddLayer(one, MotionType::Dynamic);
-    std::vector<std::vector<OverlapHit>> found(8);
-    std::atomic<int> ready{0};
-    std::vector<std::thread> threads;
-    for (int t = 0; t < 4; ++t)
-        threads.emplace_back([&, t] {
-            ++ready;
-            while (ready < 4) std::this_thread::yield();
-            for (int i = 2 * t; i < 2 * t + 2; ++i) found[static_cast<size_t>(i)] = OverlapsAt(world, i);
-        });
-    for (std::thread& thread : threads) thread.join();
-    for (int i = 0; i < 8; ++i) EXPECT_EQ(found[static_cast<size_t>(i)], OverlapsAt(one, i));
 }
 
 TEST(FirstStep, LeavesTreesOfSleepingBodiesAsTheyAre) {

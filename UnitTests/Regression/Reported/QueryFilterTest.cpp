@@ -115,7 +115,8 @@ TEST(SnapshotSources, OwnWhatIsGivenWhereTheyAreDeclared) {
     std::vector<std::byte> snapshot;
     ASSERT_TRUE(world.System().SaveSnapshot(snapshot));
     const SnapshotSources sources{.shapes = std::vector<ShapePtr>{SphereOf(2), shape}};
-    const ReplaySources replay{.shapes = {shape}, .customShapes = {{std::string("a name of its ") + "own", nullptr, nullptr}}};
+    const ReplaySources replay{.shapes = {shape},
+                               .customShapes = {{std::string("a name of its ") + "own", nullptr, nullptr}}};
     Overwrite();
     EXPECT_TRUE(other.System().RestoreSnapshot(snapshot, sources));
     EXPECT_EQ(replay.shapes[0], shape);

@@ -9,8 +9,6 @@
 #include <Fulcrum/Collision/Shapes/ShapeHash.h>
 #include <Fulcrum/Physics/Snapshot.h>
 
-#include <thread>
-
 namespace fulcrum::testing {
 namespace {
 
@@ -297,35 +295,6 @@ TEST(ShapeEdits, BodiesSavedBeforeAreRefused) {
     ASSERT_TRUE(terrain.world.System().RestoreBodies(bytes));
     Level(*terrain.field, -10, 0, -1);
     EXPECT_FALSE(terrain.world.System().RestoreBodies(bytes));
-}
-
-// ---- Threads: an edit under HoldForChanges keeps steps and queries of others out.
-
-TEST(ShapeEdits, UnderAHoldAreSafeBesideStepsAndQueries) {
-    TestWorld world({}, 2), neighbor;
-    const FieldPtr field = FlatField(), elsewhere = FlatField();
-    world.Add({.shape = field, .motion = MotionType::Static});
-    neighbor.Add({.shape = elsewhere, .motion = MotionType::Static});
-    for (int i = 0; i < 8; ++i) world.Add({.shape = CubeOf(0.5f), .position = {2.0 * i - 8, 1, 0}});
-    std::thread queries([&] {
-        WorldRayHit hit;
-        for (int i = 0; i < 200; ++i)
-            EXPECT_TRUE(world.System().Queries().CastRay({{0.1 * i - 10, 50, 3}, {0, -100, 0}}, hit));
-    });
-    std::thread edits([&] {
-        for (int i = 0; i < 50; ++i) {
-            {
-                const auto alone = world.System().HoldForChanges();
-                Level(*field, i % 11 - 5, 0, 0.01f * static_cast<float>(i + 1));
-            }
-            Level(*elsewhere, i % 11 - 5, 0, 0.01f * static_cast<float>(i + 1));  // of another world, at any time
-            neighbor.Step();
-        }
-    });
-    for (int i = 0; i < 50; ++i) world.Step();
-    queries.join();
-    edits.join();
-    EXPECT_TRUE(world.AllFinite());
 }
 
 }  // namespace
