@@ -64,9 +64,9 @@ TEST(FirstStep, LeavesTreesOfSleepingBodiesAsTheyAre) {
     AddLayer(world, MotionType::Dynamic);
     for (int i = 0; i < 4; ++i) world.Add({.shape = SphereOf(0.3f), .position = {5.0 * i, 30, 0}});
     const float before = CollidersOf(world).movingTree.Cost();
+    EXPECT_LE(WorldOf(world.System()).bodies.placed.size(), 6u);  // those that are awake, and one that sleeps
     world.Step();
     EXPECT_GT(CollidersOf(world).movingTree.Cost(), 0.9f * before);
-    EXPECT_LE(WorldOf(world.System()).bodies.placed.capacity(), 64u);
     // A query afterwards still puts it in order, and the next step does not undo that.
     (void)OverlapsAt(world, 1);
     const float after = CollidersOf(world).movingTree.Cost();
