@@ -14,10 +14,10 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x51f2436e82f15856ull;
-constexpr uint64_t kGoldenHashOfJoints = 0xfccbdeb360892018ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x8f92c15e7641ab4bull;
+constexpr uint64_t kGoldenHashOfJoints = 0xe3422bb4cb420125ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xd1ee7a7cd2042881ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7e5154f0e956aee3ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x088985073bd715e2ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
