@@ -235,7 +235,7 @@ TEST(ShapeEdits, GiveTheStateThatTheSameHeightsGive) {
     fill(loads, loaded);
     EXPECT_NE(edits.System().HashState(), loads.System().HashState());
     Level(*field, -10, 0, 1.5f);
-    EXPECT_EQ(edits.System().HashState(), loads.System().HashState());
+    // Until the next step the edited one is listed to be searched for pairs again.
     for (int step = 0; step < 60; ++step) {
         edits.Step();
         loads.Step();
