@@ -184,8 +184,8 @@ TEST(TimeToSleep, ComesAfterSliding) {
     world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5, 0}, .linearVelocity = {2, 0, 0}});
     const auto time = TimeToSleep(world.System(), kStep, 5);
     ASSERT_TRUE(time && time.Value());
-    // Slow, below 0.05 m/s, after that speed is braked by mu g; then half a second, and up to a tenth for the means of the
-    // velocity that must have forgotten the braking.
+    // Slow, below 0.05 m/s, after that speed is braked by mu g; then half a second, and up to a tenth for the means of
+    // the velocity that must have forgotten the braking.
     EXPECT_NEAR(*time.Value(), (2 - 0.05) / (0.5 * kGravity) + 0.5 + 0.05, 0.05 + 2.5 * kStep);
 }
 
