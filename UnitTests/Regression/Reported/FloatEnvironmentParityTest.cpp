@@ -278,9 +278,9 @@ TEST(FloatEnvironment, IsTheDefaultWhereMeshesAreBuiltByThreads) {
     ThreadPool pool(4);
     const uint64_t expected = hashOf({});
     for (const auto& [name, registers] : kEnvironments) {
-        const ParallelLoop loop = [&](uint32_t count, const Function<void(uint32_t)>& job) {
+        const ParallelLoop loop = [&pool, &wanted = registers](uint32_t count, const Function<void(uint32_t)>& job) {
             pool.ParallelFor(count, 1, [&](JobRange range) {
-                const Environment environment(registers);
+                const Environment environment(wanted);
                 for (uint32_t i = range.begin; i < range.end; ++i) job(i);
             });
         };
