@@ -1,5 +1,6 @@
 #include <Fulcrum/Constraints/Joints/Path.h>
 
+#include <Fulcrum/Math/ComputeApart.h>
 #include <Fulcrum/Math/FloatEnvironment.h>
 
 #include <algorithm>
@@ -85,9 +86,11 @@ double Path::SegmentLength(size_t segment, double u) const {
 
 double Path::LengthAt(double t) const {
     const DefaultFloats floats;
-    const Place place = PlaceOf(t);
-    const double before = place.segment == 0 ? 0.0 : lengths_[place.segment - 1];
-    return place.laps * Length() + before + SegmentLength(place.segment, place.u);
+    return ComputeApart([&] {
+        const Place place = PlaceOf(t);
+        const double before = place.segment == 0 ? 0.0 : lengths_[place.segment - 1];
+        return place.laps * Length() + before + SegmentLength(place.segment, place.u);
+    });
 }
 
 // Half the squared distance has the first derivative P' . (P - x) and the second P'' . (P - x) + |P'|^2. If the second
