@@ -4,7 +4,6 @@
 
 #include <Fulcrum/Math/NeedsCpp20.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <initializer_list>
 #include <memory>
@@ -52,7 +51,7 @@ private:
     void Keep(const T* elements, size_t count) {
         if (count > kRoom) return KeepAll(std::vector<T>(elements, elements + count));
         count_ = count;
-        std::copy_n(elements, count, room_);
+        for (size_t i = 0; i < count; ++i) room_[i] = elements[i];
     }
     void KeepAll(std::vector<T> elements) {
         const auto owned = std::make_shared<const std::vector<T>>(std::move(elements));

@@ -18,6 +18,7 @@
 #include <Fulcrum/Physics/World/Waking.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/JointInterface.h>
 
+#include <Fulcrum/Constraints/Joints/RowErrors.h>
 #include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
 #include <Fulcrum/Math/FloatEnvironment.h>

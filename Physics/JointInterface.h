@@ -3,7 +3,7 @@
 // wakes them.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/RowErrors.h>
+#include <Fulcrum/Constraints/Joints/JointError.h>
 #include <Fulcrum/Jobs/JobSystem.h>
 #include <Fulcrum/Math/Result.h>
 #include <Fulcrum/Physics/Joints/JointKinds.h>

@@ -3,7 +3,6 @@
 
 #include <Fulcrum/Physics/Settings.h>
 
-#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -19,7 +18,7 @@ Error PositiveError(const char* field, double value);
 Error NegativeError(const char* field, double value);
 inline constexpr double kLargestNumber = std::numeric_limits<double>::max();
 inline MaybeError CheckRange(const char* field, double value, double low, double high) {  // both ends included
-    if (value >= low && value <= high && std::fabs(value) <= kLargestNumber) [[likely]]
+    if (value >= low && value <= high && value >= -kLargestNumber && value <= kLargestNumber) [[likely]]
         return std::nullopt;
     return RangeError(field, value, low, high);
 }

@@ -3,6 +3,7 @@
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace fulcrum::testing {

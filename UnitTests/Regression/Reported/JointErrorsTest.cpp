@@ -1,6 +1,9 @@
 // A rope of rods that a heavy weight stretches: how much longer it is, is what the errors of its joints say.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace fulcrum::testing {
 namespace {
 
