@@ -118,7 +118,7 @@ struct WorldLock::State {
                 return;
         }
     }
-    // Also a step that ended by an exception while queries were let in leaves the world to others.
+    // Queries are no longer let in: where an exception ends a step, Break() has waited for those inside.
     void LeaveAsWriter() {
         Replace([](uint64_t now) { return AdmitReaders(AdmitQueries(now & ~(kWriter | kOpen))); });
         word.notify_all();
