@@ -39,9 +39,9 @@ struct ShapeCastSettings {
     float tolerance = 0;     // m, >= 0: a hit may be reported this much too late; 0: to about 1e-6 of the shapes' size
     // A shape that touches or overlaps at the start is not hit if the motion begins along its surface or out of it, as
     // for a character that stands on a floor and walks. Nor is, later, what only continues that surface: other
-    // triangles, children or bodies that lie below it, or above it by at most a millimeter or a hundredth of the moving
-    // shape's outer radius. Hits at inactive edges (SurfaceShape.h) have the normal of the face. A motion of zero
-    // length hits nothing at the start.
+    // triangles, children or bodies that lie below it, or above it by at most a millimeter, of small shapes by at most
+    // a hundredth of the outer radius of the one that moves. Hits at inactive edges (SurfaceShape.h) have the normal of
+    // the face. A motion of zero length hits nothing at the start.
     bool ignoreSeparating = false;
     bool measureDepth = true;  // otherwise overlaps at the start have depth, normal and position zero
 

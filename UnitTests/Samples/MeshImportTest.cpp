@@ -4,10 +4,9 @@
 #include <Fulcrum/Assets/Meshes/MeshImport.h>
 #include <Fulcrum/Samples/Scenes/Scenes.h>
 #include <Fulcrum/Samples/Scenes/SceneWorld.h>
+#include <Fulcrum/UnitTests/Support/FolderTest.h>
 
 #include <gtest/gtest.h>
-
-#include <unistd.h>
 
 #include <array>
 #include <fstream>
@@ -22,15 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MeshFiles : public ::testing::Test {
+class MeshFiles : public testing::FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "fulcrum-meshes-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-
     fs::path Write(const std::string& name, const std::string& text) const {
         std::ofstream(folder_ / name) << text;
         return folder_ / name;
@@ -41,8 +33,6 @@ protected:
         ADD_FAILURE() << path << " was read";
         return {};
     }
-
-    fs::path folder_;
 };
 
 // A box of an OBJ group; `first` is the number of vertices before it.

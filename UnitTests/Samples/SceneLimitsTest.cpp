@@ -4,11 +4,10 @@
 #include <Fulcrum/Assets/RagdollJson.h>
 #include <Fulcrum/Assets/SceneFile.h>
 #include <Fulcrum/Physics/Files/WholeFile.h>
+#include <Fulcrum/UnitTests/Support/FolderTest.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <nlohmann/json.hpp>
-
-#include <unistd.h>
 
 #include <cmath>
 
@@ -18,19 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-class SceneLimits : public ::testing::Test {
+class SceneLimits : public FolderTest {
 protected:
-    void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "fulcrum-scenes-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
     fs::path Write(const char* name, const std::string& bytes) const {
         EXPECT_TRUE(WriteWholeFile(folder_ / name, {bytes}));
         return folder_ / name;
     }
-    fs::path folder_;
 };
 
 template <class T>

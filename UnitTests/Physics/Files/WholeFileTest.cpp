@@ -1,6 +1,7 @@
 // Files that cannot be read or written are errors, and leave what was there.
 #include <Fulcrum/Physics/Files/ErrorBoundary.h>
 #include <Fulcrum/Physics/Files/WholeFile.h>
+#include <Fulcrum/UnitTests/Support/FolderTest.h>
 #include <Fulcrum/UnitTests/Support/FullDisk.h>
 
 #include <gtest/gtest.h>
@@ -15,23 +16,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class WholeFile : public ::testing::Test {
+class WholeFile : public FolderTest {
 protected:
     void SetUp() override {
-        std::string name = (fs::temp_directory_path() / "fulcrum-files-XXXXXX").string();
-        ASSERT_NE(mkdtemp(name.data()), nullptr);
-        folder_ = name;
+        FolderTest::SetUp();
         file_ = folder_ / "file";
     }
-    void TearDown() override { fs::remove_all(folder_); }
-
     std::string Content() const { return ReadWholeFile(file_).Value(); }
     // Files in the folder, so that what was written beside is found.
     size_t Count() const {
         return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
     }
 
-    fs::path folder_, file_;
+    fs::path file_;
 };
 
 TEST_F(WholeFile, IsReadAsItWasWritten) {
