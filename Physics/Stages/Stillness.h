@@ -39,7 +39,8 @@ inline SlowMotion::Mean MeanVelocity(const Vector3& displacement, const Quaterni
     return {displacement * (1 / dt), Vector3(turn.x, turn.y, turn.z) * ((turn.w < 0 ? -2.0f : 2.0f) / dt)};
 }
 
-// Follows the velocity of a step. At constant acceleration a mean over t seconds lags behind by that times t.
+// Follows the velocity of a step. At constant acceleration a mean over t seconds lags behind by that times t. Over a
+// step of a fraction f of t it keeps (1 - f / 2) / (1 + f / 2), e^-f to third order.
 inline void Follow(SlowMotion& motion, const SlowMotion::Mean& now, bool wasSlow, const SleepSettings& sleep,
                    float dt) {
     if (!wasSlow) {
@@ -47,7 +48,7 @@ inline void Follow(SlowMotion& motion, const SlowMotion::Mean& now, bool wasSlow
         return;
     }
     const auto follow = [&](SlowMotion::Mean& mean, float part) {
-        const float gain = dt / (part * MeanSeconds(sleep, dt) + dt);
+        const float gain = std::min(dt / (part * MeanSeconds(sleep, dt) + 0.5f * dt), 1.0f);
         mean.linear += (now.linear - mean.linear) * gain;
         mean.angular += (now.angular - mean.angular) * gain;
     };

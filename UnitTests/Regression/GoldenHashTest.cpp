@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x51f2436e82f15856ull;
-constexpr uint64_t kGoldenHashOfJoints = 0xe3422bb4cb420125ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xd1ee7a7cd2042881ull;
+constexpr uint64_t kGoldenHash = 0x6a86c7901373672cull;
+constexpr uint64_t kGoldenHashOfJoints = 0x4b26b13a7c881240ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x6a59f07fc84b8986ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x088985073bd715e2ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x06853e5bc062476aull;
 
 std::string Hex(uint64_t number) {
     char text[24];

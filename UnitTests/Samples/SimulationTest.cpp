@@ -188,7 +188,8 @@ TEST(RestFigures, AreThoseOfABoxThatSlidesUntilItRests) {
     EXPECT_NEAR(figures.drift->mean, figures.drift->largest / 2, 1e-4);
     EXPECT_LT(figures.endSpeed.value(), 1e-3);  // it was 2 m/s before the last second
     ASSERT_TRUE(figures.sleep->seconds);
-    EXPECT_NEAR(*figures.sleep->seconds, 1.95 / (0.5 * 9.81) + 0.5, 2.5 / 60);
+    // Slow from 5 cm/s on, of which the means of its velocity still know something after half a second.
+    EXPECT_NEAR(*figures.sleep->seconds, 1.95 / (0.5 * 9.81) + 0.5, 3.5 / 60);
     EXPECT_DOUBLE_EQ(figures.sleep->limit, 2);
     EXPECT_LT(figures.energyRise->relative, 1e-3);
     const auto json = ReportJson("sliding", figures, 1);
