@@ -39,8 +39,8 @@ function(fulcrum_compile_options target)
   target_compile_options(${target} PRIVATE
     -fno-math-errno -fno-trapping-math ${FULCRUM_SIMD_FLAGS}
     -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wno-psabi
-    # Masks, not branches: a | b on bools is meant. And includes go through a link, whose folder may be a clone called fulcrum.
-    $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-bitwise-instead-of-logical -Wno-nonportable-include-path>)
+    # Masks, not branches: a | b on bools is meant.
+    $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-bitwise-instead-of-logical>)
   if(FULCRUM_WARNINGS_AS_ERRORS)
     # But not those that GCC guesses after inlining: through Eigen it guesses wrong.
     target_compile_options(${target} PRIVATE -Werror

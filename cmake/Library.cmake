@@ -16,6 +16,9 @@ function(fulcrum_usage_requirements target scope)
   target_compile_features(${target} ${scope} cxx_std_20)
   target_compile_options(${target} ${scope} $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
   target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${FULCRUM_INCLUDE_ROOT}>)
+  # Includes go through a link, whose folder may be a clone called fulcrum.
+  target_compile_options(${target} ${scope}
+    $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-nonportable-include-path>>)
 endfunction()
 
 # Libraries are static, or shared where BUILD_SHARED_LIBS is set. A plugin may link static ones too, so they are
