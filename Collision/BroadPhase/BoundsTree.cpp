@@ -67,19 +67,27 @@ void BoundsTree::ResetNode(uint32_t index) {
     n.depthFromLeaves = kBuilt;
 }
 
-void BoundsTree::SetLeaf(uint32_t node, int slot, uint32_t id, const Packed& box) {
+void BoundsTree::FillWithLeaf(uint32_t node, int slot, uint32_t id, const Packed& box) {
     SetSlotBox(node, slot, box);
     nodes_[node].child[slot] = id;
-    nodes_[node].leaves |= static_cast<uint8_t>(1u << slot);
     places_[id] = node * kWidth + static_cast<uint32_t>(slot);
 }
 
-void BoundsTree::Link(uint32_t node, int slot, uint32_t child, const Packed& box) {
+void BoundsTree::SetLeaf(uint32_t node, int slot, uint32_t id, const Packed& box) {
+    FillWithLeaf(node, slot, id, box);
+    nodes_[node].leaves |= static_cast<uint8_t>(1u << slot);
+}
+
+void BoundsTree::FillWithNode(uint32_t node, int slot, uint32_t child, const Packed& box) {
     SetSlotBox(node, slot, box);
     nodes_[node].child[slot] = child;
-    nodes_[node].inner |= static_cast<uint8_t>(1u << slot);
     nodes_[child].parent = node;
     nodes_[child].parentSlot = static_cast<uint8_t>(slot);
+}
+
+void BoundsTree::Link(uint32_t node, int slot, uint32_t child, const Packed& box) {
+    FillWithNode(node, slot, child, box);
+    nodes_[node].inner |= static_cast<uint8_t>(1u << slot);
 }
 
 void BoundsTree::SetInner(uint32_t node, int slot, uint32_t child, const Packed& box) {

@@ -149,6 +149,9 @@ private:
 
     Packed SlotBox(uint32_t node, int slot) const;
     void SetSlotBox(uint32_t node, int slot, const Packed& box);
+    // A slot alone, without the mask of its node: other slots may be filled at the same time.
+    void FillWithLeaf(uint32_t node, int slot, uint32_t id, const Packed& box);
+    void FillWithNode(uint32_t node, int slot, uint32_t child, const Packed& box);
     void SetLeaf(uint32_t node, int slot, uint32_t id, const Packed& box);
     void Link(uint32_t node, int slot, uint32_t child, const Packed& box);
     void SetInner(uint32_t node, int slot, uint32_t child, const Packed& box);
@@ -181,6 +184,7 @@ private:
     };
     void PlanParts();
     void BuildParts(size_t whole, const ParallelLoop& parallel);
+    void MarkSlots(const Part& part);
     Packed BuildPart(const Part& part, double& area);
     void SplitAt(uint32_t first, uint32_t count, uint32_t left);
 

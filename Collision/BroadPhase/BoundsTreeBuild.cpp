@@ -199,6 +199,8 @@ void BoundsTree::BuildParts(size_t whole, const ParallelLoop& parallel) {
         }
         end = next;
     }
+    for (const Part& part : parts_)
+        if (part.IsSmall()) MarkSlots(part);
     RunLoop(parallel, static_cast<uint32_t>(parts_.size()), [this](uint32_t i) {
         Part& part = parts_[i];
         if (part.IsSmall()) BuildPart(part, part.area);
@@ -231,7 +233,19 @@ BoundsTree::Part BoundsTree::Part::Right() const {
     return right;
 }
 
-// Fills the slots of a part. Adds up the areas of the new nodes, and returns the box around them.
+// Sets which slots of a part will hold leaves, and which nodes: those of a node are in one byte, and several parts may
+// fill its slots at the same time.
+void BoundsTree::MarkSlots(const Part& part) {
+    Node& n = nodes_[part.node];
+    int slot = part.slot;
+    for (uint32_t left = part.count; left > 0; ++slot) {
+        const uint32_t count = std::min(left, part.capacity);
+        (count == 1 ? n.leaves : n.inner) |= static_cast<uint8_t>(1u << slot);
+        left -= count;
+    }
+}
+
+// Fills the slots of a part, which are marked. Adds up the areas of the new nodes, and returns the box around them.
 BoundsTree::Packed BoundsTree::BuildPart(const Part& part, double& area) {
     if (part.count > part.capacity) {
         SplitAt(part.first, part.count, part.CountOfLeft());
@@ -242,13 +256,15 @@ BoundsTree::Packed BoundsTree::BuildPart(const Part& part, double& area) {
     }
     Packed box = gathered_[part.first];
     if (part.count == 1) {
-        SetLeaf(part.node, part.slot, std::bit_cast<uint32_t>(box.lane[kIdLane]), box);
+        FillWithLeaf(part.node, part.slot, std::bit_cast<uint32_t>(box.lane[kIdLane]), box);
         return box;
     }
     const uint32_t node = part.nextNode;
     ResetNode(node);
     if (part.count > kWidth) {
-        box = BuildPart({node, 0, part.first, part.count, CapacityFor(part.count, kWidth), node + 1}, area);
+        const Part below{node, 0, part.first, part.count, CapacityFor(part.count, kWidth), node + 1};
+        MarkSlots(below);
+        box = BuildPart(below, area);
     } else {
         Wide<8> total(std::numeric_limits<float>::infinity());
         for (uint32_t i = 0; i < part.count; ++i) {
@@ -258,7 +274,7 @@ BoundsTree::Packed BoundsTree::BuildPart(const Part& part, double& area) {
         }
         total.Store(box.lane);
     }
-    Link(part.node, part.slot, node, box);
+    FillWithNode(part.node, part.slot, node, box);
     area += HalfArea(box);
     return box;
 }
