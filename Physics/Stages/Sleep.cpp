@@ -16,6 +16,7 @@ struct IslandRest {
     float constraints = 1;  // contacts and joints among its bodies
     JointType::Quiet quiet;
     bool isMoved = false;  // by what is no part of it: a kinematic body, a moving surface
+    bool lies = false;     // on something that does not move
 };
 
 // By root.
@@ -31,6 +32,7 @@ void FindRests(const StepContext& step, const SleepStores& stores, const PairSto
         if (!pair.touching || !bodies.dynamics[pair.bodyA].awake) return;
         IslandRest& rest = restOf(pair.bodyA);
         if (!pair.fixedB) rest.constraints += 1;
+        rest.lies |= pair.fixedB;
         rest.isMoved |= isMovingKinematic(pair.bodyB) ||
                         (step.listener && pairs.RecordOf(pair).Has(ContactRecord::kSurfaceVelocity));
     });
@@ -69,9 +71,12 @@ void FindWhatStaysAwake(const StepContext& step, const SleepStores& stores, cons
         }
         // Errors of constraints that are independent of one another add up as the root of their number. Of the speed
         // no more than twice is taken for errors: bodies that drift through space together do not sleep above 2 cm/s.
+        // In a pile each hinders the others, and what creeps or rolls there at the slow speed is soon where it stays.
         const float noise = std::sqrt(rest.constraints);
         const Unrest least = LeastUnrest(bodies, body, step.settings, step.dt);
-        const Unrest most{std::min(least.speed * std::min(noise, 2.0f), rest.quiet.speed),
+        const bool isPile = rest.lies && rest.constraints > 1;
+        const float drift = isPile ? SlowSpeed(sleep, d) : least.speed * std::min(noise, 2.0f);
+        const Unrest most{std::min(drift, rest.quiet.speed),
                           std::min(least.acceleration * noise, rest.quiet.acceleration)};
         if (IsRestless(bodies, body, most, sleep, step.dt)) awake[roots[i]] = 1;
     }

@@ -14,8 +14,8 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x6a86c7901373672cull;
-constexpr uint64_t kGoldenHashOfJoints = 0x4b26b13a7c881240ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x6a59f07fc84b8986ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x372fbb502c40c28dull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xc1b9cf06fe6a0b0full;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
 constexpr uint64_t kGoldenHashOfGuidedBodies = 0x06853e5bc062476aull;
 
