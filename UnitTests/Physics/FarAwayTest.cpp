@@ -108,7 +108,7 @@ Outcome RunAt(const Ground& ground, Fill fill, const Position& origin) {
     world.Add({.shape = ground.shape, .motion = MotionType::Static, .position = origin + ground.offset});
     const Ids bodies = fill(world, origin);
     Outcome outcome;
-    for (int i = 0; i < 1800 && outcome.sleepStep == 0; ++i) {
+    for (int i = 0; i < 900 && outcome.sleepStep == 0; ++i) {
         world.Step();
         outcome.mostPairs = std::max(outcome.mostPairs, world.Report().pairs);
         if (world.Report().awakeBodies == 0) outcome.sleepStep = world.Report().step;
