@@ -1,5 +1,6 @@
 include(${CMAKE_CURRENT_LIST_DIR}/Common.cmake)
 # Without optimization, and by Clang where it is there, in a third of GCC's time: the whole library is compiled again.
+# Flags of this build may be its compiler's own.
 find_program(CLANG clang++)
 if(CLANG AND NOT FLAGS)
   set(COMPILER ${CLANG})

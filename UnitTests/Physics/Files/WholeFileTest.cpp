@@ -18,17 +18,13 @@ namespace fs = std::filesystem;
 
 class WholeFile : public FolderTest {
 protected:
-    void SetUp() override {
-        FolderTest::SetUp();
-        file_ = folder_ / "file";
-    }
     std::string Content() const { return ReadWholeFile(file_).Value(); }
     // Files in the folder, so that what was written beside is found.
     size_t Count() const {
         return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
     }
 
-    fs::path file_;
+    const fs::path file_ = folder_ / "file";
 };
 
 TEST_F(WholeFile, IsReadAsItWasWritten) {
