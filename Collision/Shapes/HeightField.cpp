@@ -251,15 +251,105 @@ void HeightField::Changed::Include(uint32_t atX, uint32_t atZ) {
     z = {std::min(z.first, atZ), std::max(z.last, atZ)};
 }
 
-// More edits than this between two steps of a world share boxes, and then wake more bodies than they must.
-constexpr size_t kMostEdits = 32;
+// More edits than this between two steps of a world share boxes, and then wake more bodies than they must; old heights
+// and cells are kept of the last edits, up to so many for each sample of the field, but for so many in any case. Of an
+// edit whose old heights are gone nobody is lifted.
+constexpr size_t kMostEdits = 1024, kMostOldValues = 3, kFewOldValues = 1 << 16;
 
-void HeightField::LogEdit(const Bounds& changed) {
+HeightField::Edit HeightField::MakeEdit(const Changed& part, bool isOfCells) {
+    if (edits_.size() == edits_.capacity()) edits_.reserve(std::max(size_t{8}, 2 * edits_.size()));
+    Edit edit;
+    edit.part = part;
+    if (isOfCells) edit.cells.reserve(part.Count());
+    else edit.heights.reserve(part.Count());
+    for (uint32_t z = part.z.first; z <= part.z.last; ++z)
+        for (uint32_t x = part.x.first; x <= part.x.last; ++x)
+            if (isOfCells) edit.cells.push_back(Cell(x, z));
+            else edit.heights.push_back(Height(x, z));
+    return edit;
+}
+
+void HeightField::LogEdit(Edit&& edit, const Bounds& changed) {
     NoteEdit();
-    edits_.push_back({version_, changed});
+    edit.version = version_;
+    edit.changed = changed;
+    oldValues_ += edit.part.Count();
+    edits_.push_back(std::move(edit));
+    const auto forget = [&](Edit& old) {
+        oldValues_ -= old.part.Count();
+        old.part = {};
+        old.heights = std::vector<float>();  // with their memory
+        old.cells = std::vector<uint8_t>();
+    };
+    const size_t most = std::max(kFewOldValues, kMostOldValues * sampleCountX_ * sampleCountZ_);
+    for (size_t i = 0; oldValues_ > most && i + 1 < edits_.size(); ++i) forget(edits_[i]);
     if (edits_.size() <= kMostEdits) return;
-    edits_[1].changed.Include(edits_[0].changed);
-    edits_.erase(edits_.begin());
+    // Many at once: each moves all that are left.
+    constexpr size_t kShared = kMostEdits / 4;
+    for (size_t i = 0; i <= kShared; ++i) forget(edits_[i]);
+    for (size_t i = 0; i < kShared; ++i) edits_[kShared].changed.Include(edits_[i].changed);
+    edits_.erase(edits_.begin(), edits_.begin() + kShared);
+}
+
+size_t HeightField::FirstEditAfter(uint64_t version) const {
+    const auto after = [&](const Edit& edit) { return edit.version <= version; };
+    return static_cast<size_t>(std::partition_point(edits_.begin(), edits_.end(), after) - edits_.begin());
+}
+
+HeightField::EditedPart HeightField::NextEdit(uint64_t version) const {
+    const size_t next = FirstEditAfter(version);
+    if (next == edits_.size()) return {};
+    return {edits_[next].version, edits_[next].changed};
+}
+
+float HeightField::HeightAfter(uint64_t version, uint32_t x, uint32_t z) const {
+    for (size_t i = FirstEditAfter(version); i < edits_.size(); ++i)
+        if (!edits_[i].heights.empty() && edits_[i].part.Contains(x, z))
+            return edits_[i].heights[edits_[i].part.PlaceOf(x, z)];
+    return Height(x, z);
+}
+
+uint8_t HeightField::CellAfter(uint64_t version, uint32_t x, uint32_t z) const {
+    for (size_t i = FirstEditAfter(version); i < edits_.size(); ++i)
+        if (!edits_[i].cells.empty() && edits_[i].part.Contains(x, z))
+            return edits_[i].cells[edits_[i].part.PlaceOf(x, z)];
+    return Cell(x, z);
+}
+
+HeightField::SurfaceChange HeightField::ChangeOf(uint64_t version, float x, float z) const {
+    const DefaultFloats floats;
+    const float alongX = (x - origin_.x()) / cellSizeX_, alongZ = (z - origin_.z()) / cellSizeZ_;
+    const size_t index = FirstEditAfter(version - 1);
+    if (index == edits_.size() || edits_[index].version != version || edits_[index].heights.empty()) return {};
+    if (!(alongX >= 0 && alongX <= static_cast<float>(CellCountX()) && alongZ >= 0 &&
+          alongZ <= static_cast<float>(CellCountZ())))
+        return {};
+    const uint32_t atX = std::min(static_cast<uint32_t>(alongX), CellCountX() - 1),
+                   atZ = std::min(static_cast<uint32_t>(alongZ), CellCountZ() - 1);
+    const float u = alongX - static_cast<float>(atX), v = alongZ - static_cast<float>(atZ);
+    const auto heightAfter = [&](uint64_t of) {
+        const float onX = HeightAfter(of, atX + 1, atZ), onZ = HeightAfter(of, atX, atZ + 1);
+        if (u + v <= 1) {
+            const float corner = HeightAfter(of, atX, atZ);
+            return origin_.y() + (corner + u * (onX - corner) + v * (onZ - corner));
+        }
+        const float corner = HeightAfter(of, atX + 1, atZ + 1);
+        return origin_.y() + (corner + (1 - u) * (onZ - corner) + (1 - v) * (onX - corner));
+    };
+    return {heightAfter(version - 1), heightAfter(version)};
+}
+
+bool HeightField::HadTriangles(uint64_t version, const Bounds& rectangle) const {
+    const DefaultFloats floats;
+    CellRange x, z;
+    if (!FindCells({Vector3(rectangle.lower.x(), -INFINITY, rectangle.lower.z()),
+                    Vector3(rectangle.upper.x(), INFINITY, rectangle.upper.z())},
+                   x, z))
+        return false;
+    for (uint32_t atZ = z.first; atZ <= z.last; ++atZ)
+        for (uint32_t atX = x.first; atX <= x.last; ++atX)
+            if (CellAfter(version, atX, atZ) != kHoleCell) return true;
+    return false;
 }
 
 Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
@@ -275,7 +365,7 @@ Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX
             if (!HasHeight((z0 + i) * sampleCountX_ + x0 + k, heights[size_t{i} * countX + k]))
                 samples.Include(x0 + k, z0 + i);
     if (samples.IsNone()) return Bounds{};
-    edits_.reserve(kMostEdits + 1);  // the only call that may throw
+    Edit edit = MakeEdit(samples, false);  // the only call that may throw
     // The cells that touch a changed sample.
     const auto cellsAt = [](CellRange of, uint32_t count) {
         return CellRange{of.first == 0 ? 0 : of.first - 1, std::min(of.last, count - 1)};
@@ -288,7 +378,7 @@ Result<Bounds> HeightField::SetHeights(uint32_t x0, uint32_t z0, uint32_t countX
     changed.Include(BoundsOfCells(x, z));
     UpdateRanges(x, z);
     UpdateBounds();
-    LogEdit(changed);
+    LogEdit(std::move(edit), changed);
     return changed;
 }
 
@@ -303,7 +393,7 @@ Result<Bounds> HeightField::SetCells(uint32_t x0, uint32_t z0, uint32_t countX, 
         for (uint32_t k = 0; k < countX; ++k)
             if (Cell(x0 + k, z0 + i) != cells[size_t{i} * countX + k]) changed.Include(x0 + k, z0 + i);
     if (changed.IsNone()) return Bounds{};
-    edits_.reserve(kMostEdits + 1);
+    Edit edit = MakeEdit(changed, true);
     if (cells_.empty()) cells_.assign(size_t{CellCountX()} * CellCountZ(), 0);
     for (uint32_t i = 0; i < countZ; ++i) {
         for (uint32_t k = 0; k < countX; ++k) {
@@ -314,14 +404,16 @@ Result<Bounds> HeightField::SetCells(uint32_t x0, uint32_t z0, uint32_t countX, 
         }
     }
     const Bounds bounds = BoundsOfCells(changed.x, changed.z);
-    LogEdit(bounds);
+    LogEdit(std::move(edit), bounds);
     return bounds;
 }
 
 size_t HeightField::MemoryUsed() const {
+    size_t ofEdits = edits_.capacity() * sizeof(Edit);
+    for (const Edit& edit : edits_) ofEdits += edit.heights.capacity() * sizeof(float) + edit.cells.capacity();
     return sizeof(HeightField) + heights_.capacity() * sizeof(float) + steps_.capacity() * sizeof(uint16_t) +
            cells_.capacity() + ranges_.capacity() * sizeof(Range) + levels_.capacity() * sizeof(Level) +
-           materials_.capacity() * sizeof(SurfaceMaterial) + edits_.capacity() * sizeof(Edit);
+           materials_.capacity() * sizeof(SurfaceMaterial) + ofEdits;
 }
 
 }  // namespace fulcrum

@@ -2,7 +2,8 @@
 // static and kinematic bodies. Queries may run on any number of threads at once. Mutable: SetHeights and SetCells must
 // not run while another thread may access the shape, in a step or in a query; PhysicsSystem::HoldForChanges keeps the
 // other threads of a world out. Worlds need not be told of an edit: queries see it at once, the next step of each wakes
-// the bodies at the changed part, and snapshots and hashes of the state are of the content that there is.
+// the bodies at the changed part and lifts those on ground that was raised, and snapshots and hashes of the state are
+// of the content that there is.
 #pragma once
 
 #include <Fulcrum/Collision/Shapes/SurfaceShape.h>
@@ -51,13 +52,21 @@ public:
     Result<Bounds> SetHeights(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ,
                               std::span<const float> heights);
     Result<Bounds> SetCells(uint32_t x0, uint32_t z0, uint32_t countX, uint32_t countZ, std::span<const uint8_t> cells);
-    // Calls visit(const Bounds&) for boxes that together contain all that was edited after a version: of this shape, or
-    // any that LatestShapeVersion gave; 0 for all edits. Of many edits the older ones share a box.
-    template <class Visit>
-    void VisitEditsSince(uint64_t version, Visit&& visit) const {
-        for (const Edit& edit : edits_)
-            if (edit.version > version) visit(edit.changed);
-    }
+    // The box around all that the first edit after a version changed, with the version of that edit; 0: there was none.
+    // Versions are those of this shape, or any that LatestShapeVersion gave. Of many edits the older ones share a box.
+    struct EditedPart {
+        uint64_t version = 0;
+        Bounds changed{};
+    };
+    EditedPart NextEdit(uint64_t version) const;
+    // Heights of the surface over a point of the shape's x-z plane, y, before and after the edit with a version; equal
+    // if it changed none there, or is so long ago that its heights are not known any more. Holes count as filled.
+    struct SurfaceChange {
+        float before = 0, after = 0;
+    };
+    SurfaceChange ChangeOf(uint64_t version, float x, float z) const;
+    // Whether a rectangle of the x-z plane had triangles after that edit.
+    bool HadTriangles(uint64_t version, const Bounds& rectangle) const;
 
     uint32_t TriangleIdEnd() const override { return 2 * CellCountX() * CellCountZ(); }
     uint32_t TriangleCount() const override { return TriangleIdEnd() - 2 * holeCount_; }
@@ -109,11 +118,21 @@ private:
     struct Changed {
         CellRange x{~0u, 0}, z{~0u, 0};
         bool IsNone() const { return x.first > x.last; }
+        size_t Count() const { return IsNone() ? 0 : size_t{x.last - x.first + 1} * (z.last - z.first + 1); }
+        bool Contains(uint32_t atX, uint32_t atZ) const {
+            return atX >= x.first && atX <= x.last && atZ >= z.first && atZ <= z.last;
+        }
+        size_t PlaceOf(uint32_t atX, uint32_t atZ) const {
+            return size_t{atZ - z.first} * (x.last - x.first + 1) + (atX - x.first);
+        }
         void Include(uint32_t atX, uint32_t atZ);
     };
     struct Edit {
-        uint64_t version;
-        Bounds changed;
+        uint64_t version = 0;
+        Bounds changed{};
+        Changed part{};  // the samples or cells with these old values, row by row; none: not known
+        std::vector<float> heights{};
+        std::vector<uint8_t> cells{};
     };
 
     static Status CheckGrid(const HeightFieldSettings& settings);
@@ -127,7 +146,13 @@ private:
     uint16_t StepOf(float height) const;
     bool HasHeight(uint32_t sample, float height) const;
     void StoreHeight(uint32_t sample, float height);
-    void LogEdit(const Bounds& changed);
+    // An edit that is about to be made, with room to log it.
+    Edit MakeEdit(const Changed& part, bool isOfCells);
+    void LogEdit(Edit&& edit, const Bounds& changed);
+    size_t FirstEditAfter(uint64_t version) const;
+    // As it was after the edit with a version.
+    float HeightAfter(uint64_t version, uint32_t x, uint32_t z) const;
+    uint8_t CellAfter(uint64_t version, uint32_t x, uint32_t z) const;
     void MakeLevels();
     void UpdateRanges(CellRange x, CellRange z);
     void UpdateBounds();
@@ -176,6 +201,7 @@ private:
     std::vector<Range> ranges_;
     std::vector<Level> levels_;
     std::vector<Edit> edits_;  // ascending versions
+    size_t oldValues_ = 0;     // in all of them
 };
 
 }  // namespace fulcrum

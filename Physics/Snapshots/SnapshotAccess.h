@@ -270,7 +270,8 @@ void SnapshotAccess::VisitSensors(Stream& s, Sensors& store, Changed& itsChanged
 template <class Stream, class World, class Step>
 void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts& efforts) {
     auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, itsPairs, joints, coloring, sleeping,
-           sensors, removed, number, lock, outsideFatBounds, pendingTrees, seenPoses, heededShapeVersion] = world;
+           sensors, removed, number, lock, outsideFatBounds, pendingTrees, seenPoses, heededShapeVersion, lifts] =
+        world;
     auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events, errors] = step;
     auto& [deepOverlaps, dispersing, crowded, settling, settled] = crowd;

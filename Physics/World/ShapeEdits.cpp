@@ -2,12 +2,13 @@
 
 #include <Fulcrum/Collision/Shapes/HeightField.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/Lifts.h>
 #include <Fulcrum/Physics/World/Reservations.h>
 #include <Fulcrum/Physics/World/ReserveMore.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
+#include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace fulcrum {
 
@@ -52,23 +53,33 @@ void ForgetManifoldsInside(WorldState& world, uint32_t collider, const Bounds& c
     });
 }
 
-void HeedEditsOf(WorldState& world, uint32_t body, uint64_t since) {
-    const HeightField& field = FieldOf(world.bodies, body);
-    world.bodies.SetRadii(body, field);
+void UpdateEdited(WorldState& world, uint32_t body) {
+    world.bodies.SetRadii(body, FieldOf(world.bodies, body));
     if (!world.sensors.IsEmpty()) world.sensors.changed.push_back(body);
     VisitColliders(world, body, [&](uint32_t index) {
         UpdateBoundsOf(world, body, index);
         world.outsideFatBounds.Forget(index);
+    });
+}
+
+void HeedEdit(WorldState& world, uint32_t body, const HeightField::EditedPart& edit) {
+    VisitColliders(world, body, [&](uint32_t index) {
         Pose pose = ColliderPoseOf(world.bodies, world.colliders, index);
         pose.position -= world.colliders.boundsOrigin;
-        field.VisitEditsSince(since, [&](const Bounds& box) {
-            const Bounds changed = FatBoundsOf(box, world.settings, field, pose);
-            ForgetManifoldsInside(world, index, changed);
-            if (world.colliders.colliders[index].sensor) return;
-            WakeInside(world, changed);
-            for (const uint32_t inside : world.sleeping.inside)
-                if (world.bodies.dynamics[inside].motion == MotionType::Dynamic) world.bodies.MarkPlaced(inside);
-        });
+        const Bounds changed = FatBoundsOf(edit.changed, world.settings, FieldOf(world.bodies, body), pose);
+        ForgetManifoldsInside(world, index, changed);
+        if (world.colliders.colliders[index].sensor) return;
+        WakeInside(world, changed);
+        for (const uint32_t inside : world.sleeping.inside)
+            if (world.bodies.dynamics[inside].motion == MotionType::Dynamic) world.bodies.MarkPlaced(inside);
+        LiftByEdit(world, index, edit.version, world.sleeping.inside);
+    });
+}
+
+template <class Visit>
+void VisitEdited(WorldState& world, uint64_t since, Visit&& visit) {
+    world.bodies.editable.Visit([&](uint32_t body) {
+        if (world.bodies.cold[body].exists && FieldOf(world.bodies, body).Version() > since) visit(body);
     });
 }
 
@@ -85,11 +96,21 @@ void HeedShapeEditsUntil(WorldState& world, uint64_t latest) {
     // Before anything is changed: the call that heeds the edits may not take place.
     ReserveForChange(world, {.placed = world.bodies.Count()});
     if (!world.sensors.IsEmpty()) ReserveMore(world.sensors.changed, world.bodies.editable.Size());
-    const uint64_t since = std::exchange(world.heededShapeVersion, latest);
-    world.bodies.editable.Visit([&](uint32_t body) {
-        const BodyCold& cold = world.bodies.cold[body];
-        if (cold.exists && FieldOf(world.bodies, body).Version() > since) HeedEditsOf(world, body, since);
-    });
+    ReserveLifts(world);
+    const uint64_t since = world.heededShapeVersion;
+    VisitEdited(world, since, [&](uint32_t body) { UpdateEdited(world, body); });
+    // Each edit as if it had been heeded at once, in the order in which they were made, whichever fields they are of.
+    for (uint64_t heeded = since, next = 0; heeded < latest; heeded = next) {
+        next = latest;
+        VisitEdited(world, heeded, [&](uint32_t body) {
+            next = std::min(next, FieldOf(world.bodies, body).NextEdit(heeded).version);
+        });
+        VisitEdited(world, heeded, [&](uint32_t body) {
+            const HeightField::EditedPart edit = FieldOf(world.bodies, body).NextEdit(heeded);
+            if (edit.version == next) HeedEdit(world, body, edit);
+        });
+        world.heededShapeVersion = next;
+    }
 }
 
 }  // namespace fulcrum

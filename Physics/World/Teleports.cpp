@@ -58,6 +58,19 @@ void WakeAround(WorldState& world, uint32_t body) {
     WakeJoined(world, body);
 }
 
+// Bodies as indices or places.
+template <class Bodies, class BodyOf, class PoseOf, class IsTorn>
+void TeleportAll(WorldState& world, const Bodies& bodies, const BodyOf& bodyOf, const PoseOf& poseOf,
+                 const IsTorn& isTorn) {
+    for (const auto& body : bodies) WakeAround(world, bodyOf(body));
+    for (const auto& body : bodies) world.bodies.SetCenterPose(bodyOf(body), poseOf(body));
+    for (const auto& body : bodies) {
+        if (isTorn(bodyOf(body))) NoteTeleport(world, bodyOf(body));
+        UpdatePlaced(world, bodyOf(body));
+    }
+    for (const auto& body : bodies) WakeNeighbors(world, bodyOf(body));
+}
+
 }  // namespace
 
 PosesBefore::PosesBefore(const BodyStore& bodies, std::span<const BodyPlace> places) : bodies_(bodies) {
@@ -91,16 +104,32 @@ const BodyPlace* PosesBefore::Find(uint32_t body) const {
 }
 
 void Teleport(WorldState& world, std::span<const BodyPlace> places, const PosesBefore& before) {
-    for (const BodyPlace& place : places) WakeAround(world, place.body);
-    for (const auto& [body, pose] : places) {
-        const Vector3 center = world.bodies.cold[body].shape->Mass().centerOfMass;
-        world.bodies.SetCenterPose(body, {pose.position + Rotate(pose.rotation, center).cast<double>(), pose.rotation});
-    }
-    for (const BodyPlace& place : places) {
-        if (before.IsTorn(world.joints, place.body)) NoteTeleport(world, place.body);
-        UpdatePlaced(world, place.body);
-    }
-    for (const BodyPlace& place : places) WakeNeighbors(world, place.body);
+    const auto poseOf = [&](const BodyPlace& place) {
+        const Vector3 center = world.bodies.cold[place.body].shape->Mass().centerOfMass;
+        return Pose{place.pose.position + Rotate(place.pose.rotation, center).cast<double>(), place.pose.rotation};
+    };
+    const auto isTorn = [&](uint32_t body) { return before.IsTorn(world.joints, body); };
+    TeleportAll(
+        world, places, [](const BodyPlace& place) { return place.body; }, poseOf, isTorn);
+}
+
+void Teleport(WorldState& world, std::span<const uint32_t> bodies, FunctionRef<Vector3(uint32_t)> displacementOf) {
+    const auto poseOf = [&](uint32_t body) {
+        const Pose pose = world.bodies.ExactCenterPoseOf(body);
+        return Pose{pose.position + displacementOf(body).cast<double>(), pose.rotation};
+    };
+    const auto moves = [&](uint32_t body) { return std::ranges::binary_search(bodies, body); };
+    const auto isTorn = [&](uint32_t body) {
+        bool isTorn = false;
+        world.joints.VisitOf(body, [&](uint32_t index) {
+            const Joint& joint = world.joints.joints[index];
+            const uint32_t other = joint.body[1 - joint.SideOf(body)];
+            isTorn |= !moves(other) || displacementOf(other) != displacementOf(body);
+        });
+        return isTorn;
+    };
+    TeleportAll(
+        world, bodies, [](uint32_t body) { return body; }, poseOf, isTorn);
 }
 
 }  // namespace fulcrum

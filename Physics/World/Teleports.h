@@ -2,6 +2,7 @@
 // world's lock.
 #pragma once
 
+#include <Fulcrum/Math/Function.h>
 #include <Fulcrum/Physics/World/WorldState.h>
 
 #include <span>
@@ -32,5 +33,7 @@ private:
 // Puts bodies, each named once, there at once; they wake, with what rested on them and what they now touch. Mechanisms
 // whose joints are no farther apart than before do not notice. A frozen body is free again. before: made just before.
 void Teleport(WorldState& world, std::span<const BodyPlace> places, const PosesBefore& before);
+// The same, by a displacement of each body, in ascending order, m. Asks for no memory.
+void Teleport(WorldState& world, std::span<const uint32_t> bodies, FunctionRef<Vector3(uint32_t)> displacementOf);
 
 }  // namespace fulcrum

@@ -6,9 +6,10 @@ namespace fulcrum {
 
 size_t HeapBytes(const WorldState& world) {
     const auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, pairs, joints, coloring, sleeping,
-                 sensors, removed, step, lock, outsideFatBounds, pendingTrees, seenPoses, heededShapeVersion] = world;
+                 sensors, removed, step, lock, outsideFatBounds, pendingTrees, seenPoses, heededShapeVersion, lifts] =
+        world;
     return HeapBytes(settings, listener, bodies, colliders, pairs, joints, coloring, sleeping, sensors, removed, step,
-                     outsideFatBounds, seenPoses, heededShapeVersion);
+                     outsideFatBounds, seenPoses, heededShapeVersion, lifts);
 }
 
 void KeepForEvents(WorldState& world) {

@@ -7,6 +7,7 @@
 #include <Fulcrum/Physics/World/ColliderStore.h>
 #include <Fulcrum/Physics/World/CollidersOutsideFatBounds.h>
 #include <Fulcrum/Physics/World/JointStore.h>
+#include <Fulcrum/Physics/World/Lifts.h>
 #include <Fulcrum/Physics/World/PairStore.h>
 #include <Fulcrum/Physics/World/PendingTrees.h>
 #include <Fulcrum/Physics/World/SeenPoses.h>
@@ -49,6 +50,7 @@ struct WorldState {
     PendingTrees pendingTrees;
     SeenPoses seenPoses;
     uint64_t heededShapeVersion = 0;  // see ShapeEdits.h
+    LiftStore lifts;
 };
 
 size_t HeapBytes(const WorldState& world);

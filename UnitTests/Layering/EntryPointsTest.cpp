@@ -56,6 +56,7 @@ const std::set<std::string> kComputeNothing = {
     "ConvexHull::Indices",
     "ConvexHull::Vertices",
     "EmptyShape::Create",
+    "HeightField::NextEdit",
     "MutableCompound::Copy",
     "MutableCompound::Exists",
     "MutableCompound::IdOf",

@@ -100,6 +100,21 @@ TEST(HeightField, TakesLittleMoreThanItsSamples) {
     EXPECT_LE(static_cast<double>(HeightField::Create(settings).Value()->MemoryUsed()) / samples, 3.3);
 }
 
+// The heights before the last edits: 12 bytes a sample, however many edits there were, of all or of parts.
+TEST(HeightField, KeepsFewOldHeights) {
+    const Samples plain = Waves(257, 257, 2);
+    const std::shared_ptr<HeightField> field = HeightField::Create(plain.Settings()).Value();
+    const size_t before = field->MemoryUsed(), samples = size_t{257} * 257;
+    for (int i = 1; i <= 20; ++i) {
+        const std::vector<float> heights(samples, static_cast<float>(i));
+        ASSERT_TRUE(field->SetHeights(0, 0, 257, 257, heights));
+    }
+    EXPECT_LE(field->MemoryUsed() - before, 12 * samples + 10000);
+    for (uint32_t i = 0; i < 5000; ++i)
+        ASSERT_TRUE(field->SetHeights(i % 250, i / 250, 3, 3, std::vector<float>(9, static_cast<float>(i))));
+    EXPECT_LE(field->MemoryUsed() - before, 12 * samples + 300000);
+}
+
 TEST(HeightField, RaysFallThroughHolesAlone) {
     Samples samples = Waves(9, 9, 0);
     samples.cells.assign(64, 0);
