@@ -116,8 +116,7 @@ Result<Comparison> CompareWithBaseline(const std::string& text, std::span<const 
             else CompareRun(run, scenes[run.scene][key], comparison);
         }
         for (const auto& [scene, settings] : scenes.items()) {
-            const bool isRun =
-                std::any_of(runs.begin(), runs.end(), [&](const RunRecord& r) { return r.scene == scene; });
+            const bool isRun = std::ranges::find(runs, scene, &RunRecord::scene) != runs.end();
             for (const auto& [key, values] : settings.items())
                 if (isRun && !made.contains({scene, key}))
                     comparison.worse.push_back(scene + ", " + key + ": there is no such run any more");
