@@ -120,13 +120,13 @@ void Teleport(WorldState& world, std::span<const uint32_t> bodies, FunctionRef<V
     };
     const auto moves = [&](uint32_t body) { return std::ranges::binary_search(bodies, body); };
     const auto isTorn = [&](uint32_t body) {
-        bool isTorn = false;
+        bool any = false;
         world.joints.VisitOf(body, [&](uint32_t index) {
             const Joint& joint = world.joints.joints[index];
             const uint32_t other = joint.body[1 - joint.SideOf(body)];
-            isTorn |= !moves(other) || displacementOf(other) != displacementOf(body);
+            any |= !moves(other) || displacementOf(other) != displacementOf(body);
         });
-        return isTorn;
+        return any;
     };
     TeleportAll(
         world, bodies, [](uint32_t body) { return body; }, poseOf, isTorn);

@@ -466,7 +466,9 @@ TEST(RisingGround, IsHeededOnceThereIsMemory) {
         // All or none: it may be what follows that fails.
         const auto y = [&](size_t i) { return system->Bodies().GetPose(stack[i]).position.y(); };
         const double lifted = y(0) > 1 ? 1.3 : 0;
-        if (!hasThrown) EXPECT_EQ(lifted, 1.3);
+        if (!hasThrown) {
+            EXPECT_EQ(lifted, 1.3);
+        }
         for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(y(i), 0.5 + static_cast<double>(i) + lifted, kRest);
         ASSERT_TRUE(system->Update(kStep));
         for (size_t i = 0; i < 4; ++i) EXPECT_NEAR(y(i), 1.8 + static_cast<double>(i), kRest);
