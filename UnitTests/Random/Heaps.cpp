@@ -136,27 +136,24 @@ private:
         between.anchorA.point = middle + Aside();
         between.anchorA.axis = random_.Direction();
         switch (random_.Below(4)) {
-            case 0: return Add<PointJointSettings>(between);
-            case 1: return Add<FixedJointSettings>(between);
+            case 0: return Add(Of<PointJointSettings>(between));
+            case 1: return Add(Of<FixedJointSettings>(between));
             case 2: {
-                HingeJointSettings hinge;
-                static_cast<JointSettings&>(hinge) = between;
+                auto hinge = Of<HingeJointSettings>(between);
                 hinge.angle.limited = true;
                 hinge.angle.limits.min = random_.Between(-1.5f, -0.1f);
                 hinge.angle.limits.max = random_.Between(0.1f, 1.5f);
-                return Add<HingeJointSettings>(hinge);
+                return Add(hinge);
             }
             default:
                 between.anchorB = between.anchorA;
                 between.anchorA.point = balls_[a].center + Aside();
                 between.anchorB->point = balls_[b].center + Aside();
-                return Add<DistanceJointSettings>(between);
+                return Add(Of<DistanceJointSettings>(between));
         }
     }
-    template <class Settings, class Given>
-    void Add(const Given& given) {
-        Settings settings;
-        static_cast<Given&>(settings) = given;
+    template <class Settings>
+    void Add(const Settings& settings) {
         heap_.mechanism.joints.push_back(settings);
     }
 

@@ -108,9 +108,7 @@ private:
         hinge.bodyB = b;
         hinge.anchorA.point = place;
         if (random_.Chance(0.5f)) {
-            PointJointSettings point;
-            static_cast<JointSettings&>(point) = hinge;
-            machine_.joints.push_back(point);
+            machine_.joints.push_back(Of<PointJointSettings>(hinge));
             return;
         }
         hinge.anchorA.axis = isParallel_ ? Vector3(0, 0, 1) : random_.Direction();

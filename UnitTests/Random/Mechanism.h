@@ -6,6 +6,7 @@
 #include <Fulcrum/Math/Trigonometry.h>
 #include <Fulcrum/Physics/PhysicsSystem.h>
 #include <Fulcrum/Samples/Scenes/Random.h>
+#include <Fulcrum/UnitTests/Support/JointOf.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>
 
 #include <functional>

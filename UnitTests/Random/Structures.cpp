@@ -11,13 +11,6 @@ namespace {
 
 constexpr double kLeastMass = 0.1, kMostMass = 100;  // kg
 
-template <class Settings>
-Settings Of(const JointSettings& between) {
-    Settings settings;
-    static_cast<JointSettings&>(settings) = between;
-    return settings;
-}
-
 Vector3 Perpendicular(RandomPoses& random, const Vector3& axis) {
     for (;;) {
         const Vector3 across = Cross(axis, random.Direction());

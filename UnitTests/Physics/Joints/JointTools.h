@@ -2,6 +2,7 @@
 // samples. Header only; one thread at a time.
 #pragma once
 
+#include <Fulcrum/UnitTests/Support/JointOf.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <cmath>
@@ -47,14 +48,6 @@ inline JointSettings Between(BodyId a, BodyId b, const Position& point, const Ve
 inline JointSettings UprightBetween(BodyId a, BodyId b, const Position& point) {
     JointSettings settings = Between(a, b, point);
     settings.anchorA.normal = Vector3(0, 1, 0);
-    return settings;
-}
-
-// Of kinds that are no aggregates, or whose own fields are set later.
-template <class Settings>
-Settings Of(const JointSettings& between) {
-    Settings settings;
-    static_cast<JointSettings&>(settings) = between;
     return settings;
 }
 
