@@ -49,6 +49,8 @@ struct SceneDescription {
     std::vector<SceneBody> bodies;
     std::vector<SceneJoint> joints;
     std::vector<SceneRagdoll> ragdolls;
+    // One line each: what the file has that no longer has an effect. Filled by reading, not written.
+    std::vector<std::string> notes;
 };
 
 // What AddScene created: the ids in the order of the description.

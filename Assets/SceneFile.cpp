@@ -44,6 +44,7 @@ public:
         Each("ragdolls", [&](JsonReader& fields) { ReadRagdoll(fields); });
         root_.Finish();
         if (document_.error) return *document_.error;
+        scene_.notes = std::move(document_.notes);
         return std::move(scene_);
     }
 

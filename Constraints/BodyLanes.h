@@ -149,6 +149,20 @@ inline Quaternion TurnOf(const Vector3& v) {
     return {v.x() * half.x(), v.y() * half.x(), v.z() * half.x(), half.y()};
 }
 
+// The rotation vector, rad, of the rotation `before`, followed by that of a small turn, to first order in it (inverse
+// left Jacobian of the rotation vector). half: HalfTurnOf `before`.
+template <class Real>
+FULCRUM_FORCE_INLINE Vec3<Real> TurnedSlightly(const Vec3<Real>& before, const Vec2<Real>& half,
+                                               const Vec3<Real>& turn) {
+    // (1 - (t / 2) cot(t / 2)) / t^2 for an angle t.
+    const Real squared = Dot<Real>(before, before);
+    const Real series = Real(1.0f / 12) + squared * (Real(1.0f / 720) + squared * Real(1.0f / 30240));
+    const Real closed = (Real(1.0f) - Real(0.5f) * half.y() / half.x()) / Max(squared, Real(0.1f));
+    const Real gamma = Select(squared < Real(0.1f), series, closed);
+    const Vec3<Real> across = Cross<Real>(turn, before);
+    return before + turn + across * Real(0.5f) - Cross<Real>(before, across) * gamma;
+}
+
 // Updates BodyState::halfTurn in a row of displacements from the row's rotation.
 template <class Real>
 FULCRUM_FORCE_INLINE void SetHalfTurn(Real (&row)[8]) {

@@ -207,10 +207,9 @@ Status BodyInterface::SetPoses(std::span<const BodyId> ids, std::span<const Pose
     std::ranges::sort(sorted);
     if (std::ranges::adjacent_find(sorted) != sorted.end())
         return Error{ErrorCode::Unsupported, "a body is named twice; it can be in one place"};
-    const PosesBefore before(world_.bodies, places);
     ReserveForChange(world_, {.placed = places.size()});
     change.Begin();
-    Teleport(world_, places, before);
+    Teleport(world_, places);
     return Done{};
 }
 

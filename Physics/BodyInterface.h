@@ -54,8 +54,9 @@ public:
     bool Exists(BodyId id) const;
 
     // Teleports the body; wakes it, the bodies that touched it and those that it touches now. Unfreezes a frozen body,
-    // at rest. A pose returned by GetPose is restored bit-exactly. Errors: UnknownId, NonFinite, OutOfRange (beyond
-    // 1e18 m), Unnormalized.
+    // at rest. Before the next step, what joints hold to it alone follows, if it was moved far (Docs/Joints.md); bodies
+    // that are moved, too, do not. A pose returned by GetPose is restored bit-exactly. Errors: UnknownId, NonFinite,
+    // OutOfRange (beyond 1e18 m), Unnormalized.
     Status SetPose(BodyId id, const Position& position, const Quaternion& rotation);
     // Several bodies at once, each to its pose: joints between bodies whose relative poses do not change are not
     // disturbed, as in a ragdoll or vehicle that is moved as a whole. Velocities are kept. Errors also: OutOfRange (not

@@ -188,19 +188,16 @@ Status PhysicsSystem::RestoreBodies(std::span<const std::byte> bytes) {
 
     ReserveForChange(*world_, {.placed = saved.size()});
     Array<BodyPlace> places;
-    Array<PosesBefore> before;
     places.reserve(saved.size());
-    before.reserve(saved.size());
     for (const SavedBody& body : saved) {
         const Vector3 offset = world_->bodies.cold[body.id.index].shape->Mass().centerOfMass;
         const Position place =
             body.center.position + body.remainder.value - Rotate(body.center.rotation, offset).cast<double>();
         places.push_back({body.id.index, {place, body.center.rotation}});
-        before.emplace_back(world_->bodies, std::span(&places.back(), 1));
     }
     change.Begin();
     for (size_t i = 0; i < saved.size(); ++i) {
-        Teleport(*world_, {&places[i], 1}, before[i]);
+        Teleport(*world_, {&places[i], 1});
         const bool isGiven = IsFinite(saved[i].linear) && IsFinite(saved[i].angular);
         if (world_->bodies.dynamics[places[i].body].motion != MotionType::Static && isGiven)
             GiveVelocity(*world_, places[i].body, saved[i].linear, saved[i].angular);

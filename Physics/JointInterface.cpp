@@ -1,13 +1,11 @@
 #include <Fulcrum/Physics/JointInterface.h>
 
-#include <Fulcrum/Constraints/Joints/RowErrors.h>
-#include <Fulcrum/Constraints/Parts/HingeRotationPart.h>
-#include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
 #include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/BodyReading.h>
 #include <Fulcrum/Physics/World/JointChanges.h>
+#include <Fulcrum/Physics/World/JointErrors.h>
 #include <Fulcrum/Physics/World/TargetChanges.h>
 #include <Fulcrum/Physics/World/WorldChange.h>
 
@@ -70,30 +68,6 @@ void Write(float (&to)[4], const Quaternion& q) {
     to[1] = q.y;
     to[2] = q.z;
     to[3] = q.w;
-}
-
-Frame Read(const float (&anchor)[3], const float (&frame)[4]) {
-    return {Vector3(anchor[0], anchor[1], anchor[2]), {frame[0], frame[1], frame[2], frame[3]}};
-}
-
-// The current poses of the bodies, with zero velocities.
-JointPose PoseOf(const WorldState& world, uint32_t index) {
-    const Joint& joint = world.joints.joints[index];
-    const JointRecord& record = world.joints.records[index];
-    const Pose a = WorldFrameOf(world, joint.body[0], Read(record.anchorA, record.frameA));
-    const Pose b = WorldFrameOf(world, joint.body[1], Read(record.anchorB, record.frameB));
-    JointPose pose;
-    pose.armA = (a.position - world.bodies.CenterOf(joint.body[0])).cast<float>();
-    pose.armB = (b.position - world.bodies.CenterOf(joint.body[1])).cast<float>();
-    pose.offset = (b.position - a.position).cast<float>();
-    pose.frameA = a.rotation;
-    pose.frameB = b.rotation;
-    pose.anchorA = a.position;
-    if (joint.type) {
-        pose.turnedA = joint.type->turnedA;
-        pose.turnedB = joint.type->turnedB;
-    }
-    return pose;
 }
 
 // Static, without a shape, near the first body, where floats are precise.
@@ -354,50 +328,9 @@ double JointInterface::GetCoordinate(JointId id, JointAxis axis) const {
                : 0.0;
 }
 
-namespace {
-
-JointError ErrorOfLocks(const JointLocks& locks, const JointPose& pose) {
-    JointError error;
-    const auto axisOf = [](const Quaternion& frame, int k) { return Rotate(frame, Vector3(Vector3::Unit(k))); };
-    if (locks.linear == LinearLock::Point) error.distance = Length(pose.offset);
-    if (locks.linear == LinearLock::Line) {
-        const Vector3 line = axisOf(pose.frameA, locks.line);
-        error.distance = Length(Vector3(pose.offset - line * Dot(line, pose.offset)));
-    }
-    if (locks.angular == AngularLock::All)
-        error.angle = Length(RotationVectorOf<float>(pose.frameB * pose.frameA.Conjugate()));
-    if (locks.angular == AngularLock::Axis) {
-        const Vector3 b = axisOf(pose.frameB, (locks.axis + 1) % 3), c = axisOf(pose.frameB, (locks.axis + 2) % 3);
-        const Vec2<float> hinge = HingeError<float>(axisOf(pose.frameA, locks.axis), b, c);
-        error.angle = std::sqrt(hinge.x() * hinge.x() + hinge.y() * hinge.y());
-    }
-    return error;
-}
-
-JointError ErrorOfRows(const JointType& type, JointPose pose) {
-    if (type.MaxRows() == 0) return {};
-    pose.dt = pose.substepDt = 1.0f / 60;  // of any step: it only adds limits that are not exceeded
-    JointRowList list;
-    type.RowsAt(pose, list);
-    RowErrors errors;
-    for (uint32_t i = 0; i < list.count; ++i) {
-        const JointRow& row = list.rows[i];
-        if (!std::isfinite(row.error) || IsAtForceLimit(row.error, type.forces[row.slot], row.minForce, row.maxForce))
-            continue;
-        errors.Add(ErrorOf(row), IsAngle(row), row.isLock);
-    }
-    return errors.Largest();
-}
-
-}  // namespace
-
 JointError JointInterface::GetError(JointId id) const {
     const DefaultFloats floats;
-    if (!Exists(id)) return {};
-    const JointPose pose = PoseOf(world_, id.index);
-    const JointType& type = *world_.joints.types[id.index];
-    const JointError locks = ErrorOfLocks(type.Locks(), pose), rows = ErrorOfRows(type, pose);
-    return {std::max(locks.distance, rows.distance), std::max(locks.angle, rows.angle)};
+    return Exists(id) ? ErrorOfJoint(world_, id.index) : JointError{};
 }
 
 namespace {
@@ -427,14 +360,12 @@ JointAxisForces JointInterface::GetAxisForces(JointId id, JointAxis axis) const 
 Pose JointInterface::GetFrameA(JointId id) const {
     const DefaultFloats floats;
     if (!Exists(id)) return {};
-    const JointRecord& record = world_.joints.records[id.index];
-    return WorldFrameOf(world_, world_.joints.joints[id.index].body[0], Read(record.anchorA, record.frameA));
+    return AnchorFrameOf(world_, id.index, 0);
 }
 Pose JointInterface::GetFrameB(JointId id) const {
     const DefaultFloats floats;
     if (!Exists(id)) return {};
-    const JointRecord& record = world_.joints.records[id.index];
-    return WorldFrameOf(world_, world_.joints.joints[id.index].body[1], Read(record.anchorB, record.frameB));
+    return AnchorFrameOf(world_, id.index, 1);
 }
 BodyId JointInterface::GetBodyA(JointId id) const {
     return Exists(id) ? IdOf(world_, world_.joints.joints[id.index].body[0]) : BodyId{};

@@ -36,7 +36,7 @@ class JointInterface {
 public:
     explicit JointInterface(WorldState& world) : world_(world) {}
 
-    // Settings: those of any kind in Joints/JointKinds.h. The bodies may be in any pose: joints with errors are pulled
+    // Settings: those of any kind in Joints/JointKinds.h. The bodies may be in any pose: joints with errors come
     // together. Errors name the field: UnknownId (a body), Unsupported (the same body twice, no dynamic one),
     // NonFinite, NonPositive, Negative, OutOfRange, Unnormalized. On error nothing is created.
     template <SettingsOfAKindOfJoint Settings>

@@ -35,8 +35,8 @@ struct JointAnchor {
 };
 
 // Of two joints of a body the one of higher priority is solved later in every iteration, and wins in a conflict. A
-// joint to a static or kinematic body counts as High. This is an order, not a weight: with few iterations the joint of
-// lower priority still has an effect.
+// joint to a static or kinematic body is solved as late. This is an order, not a weight: with few iterations the joint
+// of lower priority still has an effect.
 enum class JointPriority : uint8_t { Normal, High };
 
 struct JointSettings {

@@ -33,6 +33,7 @@ Result<std::unique_ptr<PhysicsSystem>> PhysicsSystem::Create(const SystemSetting
     KeepForEvents(*world);
     auto step = std::make_unique<StepState>();
     step->findings.resize(world->jobs->WorkerCount());
+    step->ofWorkers.resize(world->jobs->WorkerCount());
     return std::unique_ptr<PhysicsSystem>(new PhysicsSystem(std::move(world), std::move(step)));
 }
 

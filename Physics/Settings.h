@@ -77,10 +77,11 @@ constexpr LockedAxes operator|(LockedAxes a, LockedAxes b) {
     return static_cast<LockedAxes>(static_cast<uint8_t>(a) | static_cast<uint8_t>(b));
 }
 
-// How contact overlaps and joint errors are corrected. Docs/Accuracy.md says which suits which effort.
+// How contact overlaps are corrected where there are no joints. With joints, their errors and the overlaps of what they
+// connect are always corrected in the poses. Docs/Accuracy.md says which suits which effort.
 enum class PositionCorrection : uint8_t {
     SoftRelax,  // soft rows in the velocity iterations; relax iterations remove the correction velocity
-    Baumgarte,  // hard rows; position iterations correct poses and add no velocity. Smallest joint errors
+    Baumgarte,  // hard rows; position iterations correct poses and add no velocity
 };
 
 // Solver effort: trades speed for accuracy.
@@ -90,8 +91,8 @@ struct SolverSettings {
     int velocityIterations = 1;
     int positionIterations = 1;  // 0..255 per substep: relax iterations (SoftRelax) or position iterations (Baumgarte)
     PositionCorrection positionCorrection = PositionCorrection::SoftRelax;
-    // For Baumgarte: fraction of the error that a position iteration corrects, > 0, at most 1; and the overlap that it
-    // leaves, m, 0..1000, so that resting contacts persist: without any, walls creep sideways.
+    // For Baumgarte, and for all with joints: fraction of the error that a position iteration corrects, > 0, at most 1;
+    // and the overlap that it leaves, m, 0..1000, so that resting contacts persist: without any, walls creep sideways.
     float baumgarte = 0.2f;
     float baumgarteSlop = 0.001f;
 
@@ -204,14 +205,11 @@ struct SystemSettings {
     // m/s, > 0, at most 1e6: largest speed at which bodies that were created, placed or grown inside each other are
     // separated. They keep none of that velocity.
     float depenetrationSpeed = 0.5f;
-    float jointFrequency = std::numeric_limits<float>::infinity();  // Hz, likewise: frequency of soft joint locks
-    float jointDampingRatio = 1.0f;                                 // 0..1e6
-    // Trees of joints whose load exceeds this multiple of their own bodies' mass are solved by the direct solver; twice
-    // this if all masses are alike, as in an unloaded rope; so are three joints and more one after the other that
-    // all lock rotations, once one of them has been torn a little (Docs/Joints.md). > 0, infinite: never.
+    // The joints of islands that carry more than this multiple of their own bodies' mass are solved directly; twice
+    // this if all masses are alike, as in an unloaded rope; so are closed loops where nothing touches, and long levers
+    // of which a joint has been torn a little (Docs/Joints.md). > 0, infinite: never.
     float exactJointLoad = 10.0f;
-    // m/s and rad/s, > 0, at most 1e6: largest correction speed of joints; up to three times that if they are far apart
-    // (Docs/Joints.md).
+    // m/s and rad/s, > 0, at most 1e6: largest correction speed of joints, in the poses.
     float jointPushSpeed = 20.0f;
     // m/s, >= 0: restitution threshold, slower impacts do not bounce. Between bodies that gravity does not press
     // together the threshold is at most the speed gained in four substeps of gravity.

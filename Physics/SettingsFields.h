@@ -259,8 +259,6 @@ void Describe(Archive& archive, SystemSettings& s) {
     archive.Field("contactDampingRatio", s.contactDampingRatio);
     archive.Field("contactPushSpeed", s.contactPushSpeed);
     archive.Field("depenetrationSpeed", s.depenetrationSpeed);
-    archive.Field("jointFrequency", s.jointFrequency);
-    archive.Field("jointDampingRatio", s.jointDampingRatio);
     archive.Field("exactJointLoad", s.exactJointLoad);
     archive.Field("jointPushSpeed", s.jointPushSpeed);
     archive.Field("restitutionSpeed", s.restitutionSpeed);

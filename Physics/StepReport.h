@@ -15,7 +15,7 @@ const char* StageName(int stage);
 struct IslandEffortReport {
     int substeps = 0, velocityIterations = 0, positionIterations = 0;
     // The body that required it: the one that would exceed AccuracyTarget most, the lighter one of its contact; or a
-    // body of a joint that asks for more effort, or of a loaded tree of joints.
+    // body of a joint that asks for more effort, or of a load.
     BodyId culprit;
     uint32_t bodies = 0;  // dynamic ones in it
 };

@@ -187,9 +187,6 @@ MaybeError Check(const SystemSettings& s) {
             CheckRange("contactPushSpeed", s.contactPushSpeed, 0, kMost),
             CheckPositive("depenetrationSpeed", s.depenetrationSpeed),
             CheckRange("depenetrationSpeed", s.depenetrationSpeed, 0, kMost),
-            CheckPositiveOrInfinite("jointFrequency", s.jointFrequency),
-            CheckNotNegative("jointDampingRatio", s.jointDampingRatio),
-            CheckRange("jointDampingRatio", s.jointDampingRatio, 0, kMost),
             CheckPositive("jointPushSpeed", s.jointPushSpeed), CheckRange("jointPushSpeed", s.jointPushSpeed, 0, kMost),
             CheckPositiveOrInfinite("exactJointLoad", s.exactJointLoad),
             CheckNotNegative("restitutionSpeed", s.restitutionSpeed), CheckPositive("boundsMargin", s.boundsMargin)))

@@ -73,12 +73,12 @@ function(fulcrum_library folder)
   set_target_properties(Fulcrum${folder} PROPERTIES EXPORT_NAME ${folder})
 endfunction()
 
-# Eigen solves trees of joints. No public header includes it, so programs do without.
+# Eigen composes stiffnesses of joints. No public header includes it, so programs do without.
 fulcrum_library(Math)
 fulcrum_library(Jobs PUBLIC Fulcrum::Math Threads::Threads)
 fulcrum_library(Collision PUBLIC Fulcrum::Math PRIVATE $<$<BOOL:${FULCRUM_LIBCCD}>:ccd>
   PRECOMPILED <algorithm> <Fulcrum/Collision/NarrowPhase/SurfaceContact.h>)
-fulcrum_library(Constraints PUBLIC Fulcrum::Math PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>
+fulcrum_library(Constraints PUBLIC Fulcrum::Math Fulcrum::Jobs
   PRECOMPILED <algorithm> <Fulcrum/Constraints/Joints/JointBatch.h>)
 # The kernels are long enough alone.
 set_source_files_properties(Constraints/Joints/SolveJoints.cpp Constraints/Joints/PrepareJoints.cpp Constraints/Joints/SolveBalls.cpp

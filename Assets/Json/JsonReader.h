@@ -37,6 +37,7 @@ struct JsonDocument {
     MaybeError error;                        // the first
     std::map<std::string, ShapePtr> shapes;  // that bodies may name
     std::filesystem::path folder;            // to which names of other files are relative
+    std::vector<std::string> notes;          // on names that earlier versions had
     JsonBudget budget;
     int levels = 0;  // of shapes within shapes
 };
@@ -82,6 +83,10 @@ public:
         if (error_) return;
         for (const auto& [name, value] : node_.items()) {
             if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+            if (path_ == "settings" && (name == "jointFrequency" || name == "jointDampingRatio")) {
+                document_.notes.push_back(PathOf(name) + " has no effect: locks of joints are hard");
+                continue;
+            }
             error_ = WrongAt(PathOf(name), "an unknown name; known are " + ListOf(known_));
             return;
         }

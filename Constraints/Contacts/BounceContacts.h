@@ -165,8 +165,8 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
         return WorkOf(normal, NormalMotionOf(batch, of)) + friction[0] * Dot<Real>(of.linear, batch.tangent1) +
                friction[1] * Dot<Real>(of.linear, batch.tangent2) + friction[2] * Dot<Real>(of.angular, batch.normal);
     };
-    const Real before = rateOf(velocity), rest = Real(0.5f) * (rateOf(changed) - before);
-    const Real rate = Min(before + bounciness.closing * (Real(dt) - hits.time) * normal.sum, zero);
+    const Real rateBefore = rateOf(velocity), rest = Real(0.5f) * (rateOf(changed) - rateBefore);
+    const Real rate = Min(rateBefore + bounciness.closing * (Real(dt) - hits.time) * normal.sum, zero);
     const Real part = Select(rest > -rate, -rate / Max(rest, Real(1e-30f)), one);
     Real sum = zero;
     for (int k = 0; k < 6; ++k) {

@@ -23,6 +23,7 @@
 #include <Fulcrum/Constraints/MassOverride.h>
 #include <Fulcrum/Constraints/Parts/BodyState.h>
 #include <Fulcrum/Constraints/Parts/RowSoftness.h>
+#include <Fulcrum/Constraints/WarmStart.h>
 
 namespace fulcrum {
 
@@ -184,6 +185,12 @@ void LimitGuidedPushes(ContactBatch<N, kFixedB>& batch);
 template <int N, bool kFixedB>
 void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states);
 
+// The same where the warm start is scaled by island: see WarmStart.h.
+template <int N, bool kFixedB>
+void AddWarmStart(const ContactBatch<N, kFixedB>& batch, WarmStart* starts, const ContactSolveSettings& settings);
+template <int N, bool kFixedB>
+void ScaleImpulses(ContactBatch<N, kFixedB>& batch, const WarmStart* starts);
+
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
@@ -211,12 +218,6 @@ void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, c
 // to what is allowed. Updates the separations. Returns whether it moved the bodies.
 template <int N, bool kFixedB>
 bool LimitDepth(ContactBatch<N, kFixedB>& batch, int lane, BodyState* states, const ContactSolveSettings& settings);
-
-// One iteration over the pseudo-velocities (split impulses) that pull joints together which are far apart (PullJoints);
-// they are in `pseudo` in place of the velocities. Points may close their gaps within the substep and approach no
-// further. Sets BodyState::nearFixed if the second bodies are static or kinematic.
-template <int N, bool kFixedB>
-void PullContacts(const ContactBatch<N, kFixedB>& batch, BodyState* pseudo, const ContactSolveSettings& settings);
 
 // Replaces the rows of a lane by those of its record, `elapsed` seconds after the start of the step: with kRecollided
 // after the bodies collided again, with kApart by inactive ones. records: impulses are those of the last substep.

@@ -228,6 +228,15 @@ FULCRUM_FORCE_INLINE NormalImpulses<Wide<N>> TotalOf(const ContactBatch<N, kFixe
     return total;
 }
 
+// Force and torque about c of all accumulated impulses, N s and N m s.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE Twist<Wide<N>> TotalWrench(const ContactBatch<N, kFixedB>& batch) {
+    const NormalImpulses<Wide<N>> normal = TotalOf(batch);
+    const auto* f = batch.frictionImpulse;
+    return {batch.normal * normal.sum + batch.tangent1 * f[0] + batch.tangent2 * f[1],
+            NormalTorque(batch, normal.sumA, normal.sumB) + batch.normal * f[2]};
+}
+
 // Index into `response` of the pair i < j.
 constexpr int PairIndex(int i, int j) { return i == 0 ? j - 1 : i + j; }
 

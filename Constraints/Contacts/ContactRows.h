@@ -274,10 +274,8 @@ template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     Twists<N, kFixedB> twists;
     Gather<BodyRow::Velocity>(batch, states, twists);
-    const NormalImpulses<Wide<N>> normal = TotalOf(batch);
-    const auto* f = batch.frictionImpulse;
-    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * normal.sum + batch.tangent1 * f[0] + batch.tangent2 * f[1],
-                            NormalTorque(batch, normal.sumA, normal.sumB) + batch.normal * f[2]);
+    const Twist<Wide<N>> wrench = TotalWrench(batch);
+    ApplyToBoth<N, kFixedB>(batch, twists, wrench.linear, wrench.angular);
     Scatter(batch, twists);
 }
 

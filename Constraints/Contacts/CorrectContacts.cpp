@@ -1,5 +1,7 @@
 #include <Fulcrum/Constraints/Contacts/ContactKernels.h>
 
+#include <limits>
+
 namespace fulcrum {
 
 using namespace contacts;
@@ -22,8 +24,24 @@ void CorrectContacts(const ContactBatch<N, kFixedB>& batch, BodyState* states, c
     }
     const NormalImpulses<Real> impulses = SweepMissing(batch, missing);
     if (!(impulses.sum > zero).Any()) return;
-    ApplyToBoth<N, kFixedB>(batch, twists, batch.normal * impulses.sum,
-                            NormalTorque(batch, impulses.sumA, impulses.sumB));
+    Vec3<Real> force = batch.normal * impulses.sum, torque = NormalTorque(batch, impulses.sumA, impulses.sumB);
+    // Rows are linear in rotations: no correction turns a body further than they are valid for, nor is one without
+    // bound.
+    const auto turnOf = [&](const UniformInverseMass<Real>& inverse, const Vec3<Real>& arm) {
+        const Vec3<Real> turn = inverse.inertia * (Cross<Real>(arm, force) + torque);
+        return Dot<Real>(turn, turn);
+    };
+    Real squared = turnOf(batch.inverseA, batch.armA);
+    if constexpr (!kFixedB) squared = Max(squared, turnOf(batch.sideB.inverse, batch.sideB.arm));
+    constexpr float kMostTurn = 0.3f;  // rad
+    const auto isNear = squared <= Real(kMostTurn * kMostTurn);
+    if (!isNear.All()) [[unlikely]] {
+        const auto isKnown = squared < Real(std::numeric_limits<float>::infinity());
+        const Real scale = Select(isNear, Real(1.0f), Select(isKnown, Real(kMostTurn) / Sqrt(squared), zero));
+        force = ZeroUnless<Real>(scale > zero, Vec3<Real>(force * scale));
+        torque = ZeroUnless<Real>(scale > zero, Vec3<Real>(torque * scale));
+    }
+    ApplyToBoth<N, kFixedB>(batch, twists, force, torque);
     SetHalfTurn<Real>(twists.a);
     if constexpr (!kFixedB) SetHalfTurn<Real>(twists.b);
     Scatter(batch, twists);

@@ -58,6 +58,44 @@ void WarmStartContacts(ContactBatch<N, kFixedB>& batch, BodyState* states) {
     WarmStartRows(batch, states);
 }
 
+// Of gaps, of a side that moves by itself, of surface velocities; not of overlaps, whose recovery is not kept.
+template <int N, bool kFixedB>
+void AddWarmStart(const ContactBatch<N, kFixedB>& batch, WarmStart* starts, const ContactSolveSettings& settings) {
+    using Real = Wide<N>;
+    const auto [force, torque] = TotalWrench(batch);
+    Real work(0.0f);
+    for (int i = 0; i < batch.pointCount; ++i)
+        work += batch.rows[i].impulse * Max(batch.rows[i].separation, Real(0.0f)) * Real(settings.inverseDt);
+    uint32_t bodyB[N];
+    uint32_t fixedB = 0;
+    Vec3<Real> armB;
+    if constexpr (kFixedB) {
+        const Twist<Real>& velocity = batch.sideB.velocity;
+        work += Dot<Real>(force, velocity.linear + batch.sideB.acceleration * Real(settings.elapsed)) +
+                Dot<Real>(torque, velocity.angular);
+        for (int i = 0; i < N; ++i) bodyB[i] = batch.bodyA[i];
+        fixedB = ~0u;
+    } else {
+        for (int i = 0; i < N; ++i) bodyB[i] = batch.bodyB[i];
+        armB = batch.sideB.arm;
+        if (batch.hasSurface) {
+            const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, settings.rare->surfaceVelocities);
+            const auto* f = batch.frictionImpulse;
+            work += f[0] * surface.v1 + f[1] * surface.v2 + f[2] * surface.spin;
+        }
+    }
+    const Twist<Real> onA{-force, -(Cross<Real>(batch.armA, force) + torque)},
+        onB{force, Cross<Real>(armB, force) + torque};
+    AddWarmStart<N>(starts, batch.bodyA, bodyB, batch.count, 0, fixedB, onA, onB, Vec2<Real>(work, Real(0.0f)));
+}
+
+template <int N, bool kFixedB>
+void ScaleImpulses(ContactBatch<N, kFixedB>& batch, const WarmStart* starts) {
+    const Wide<N> scale = GatherScale<N>(starts, batch.bodyA, batch.bodyA, 0);
+    for (int i = 0; i < batch.pointCount; ++i) batch.rows[i].impulse = batch.rows[i].impulse * scale;
+    for (int k = 0; k < 3; ++k) batch.frictionImpulse[k] = batch.frictionImpulse[k] * scale;
+}
+
 template <int N, bool kFixedB>
 void SolveContactVelocities(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings) {
     if (settings.relaxes && !MovesByItself(batch).Any()) SolveAllRows<Pass::Push>(batch, states, settings);
@@ -91,6 +129,8 @@ void RelaxContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Con
 
 #define FULCRUM_INSTANTIATE(lanes, fixedB)                                                                       \
     template void WarmStartContacts(ContactBatch<lanes, fixedB>&, BodyState*);                                   \
+    template void AddWarmStart(const ContactBatch<lanes, fixedB>&, WarmStart*, const ContactSolveSettings&);     \
+    template void ScaleImpulses(ContactBatch<lanes, fixedB>&, const WarmStart*);                                 \
     template void SolveContactVelocities(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&); \
     template void RelaxContacts(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);          \
     template void UpdateSeparations(ContactBatch<lanes, fixedB>&, BodyState*, const ContactSolveSettings&);

@@ -214,8 +214,7 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
             reach += SpringTravel(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
         }
         if (limit.error > reach) continue;
-        AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows).yields =
-            std::none_of(axes_.begin(), axes_.end(), [](const AxisControl& a) { return PressesOnLimits(a.motor); });
+        AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows);
     }
 }
 

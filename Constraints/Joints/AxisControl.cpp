@@ -131,11 +131,10 @@ void AddControlRows(const AxisControl& control, const JointPose& pose, const Joi
     if (!control.limited) return;
     const float speed = pose.SpeedOf(motion);
     const float above = static_cast<float>(position - limits.min), below = static_cast<float>(limits.max - position);
-    const bool yields = !PressesOnLimits(control.motor);
     if (above <= Reach(control, position, speed, -1.0f, slackSpeed, pose.dt))
-        AddLimitRow(limits.spring, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows).yields = yields;
+        AddLimitRow(limits.spring, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows);
     if (below <= Reach(control, position, speed, 1.0f, slackSpeed, pose.dt))
-        AddLimitRow(limits.spring, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows).yields = yields;
+        AddLimitRow(limits.spring, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows);
 }
 
 }  // namespace fulcrum

@@ -59,10 +59,6 @@ inline bool IsHard(const SpringSettings& spring) {
     return (spring.mode == SpringMode::StiffnessAndDamping ? spring.stiffness : spring.frequency) <= 0.0f;
 }
 
-// Whether the motor keeps pressing against a limit, which must then be a hard row: a strong motor would deflect a soft
-// one by 0.01 rad.
-inline bool PressesOnLimits(const JointMotor& motor) { return motor.mode == MotorMode::ToVelocity; }
-
 // Slots of the rows of one axis, relative to the axis' first slot.
 struct ControlSlots {
     static constexpr uint32_t kLowLimit = 0, kHighLimit = 1, kMotor = 2, kFriction = 3, kCount = 4;

@@ -4,8 +4,8 @@
 // first, then the locks, which therefore win. Four measures make few iterations sufficient:
 // - The parts are set up in every substep from the displacements since the start of the step, so that a joint follows
 //   the arcs along which its bodies move.
-// - Within a step, bodies keep their velocities from substep to substep, which replaces the warm start (Solve stage).
-//   Only the change due to the rotation of a part's impulse is added: `turnedA` and `turnedB`.
+// - Velocity rows aim at the end of the substep: their bias is the second-order part of the motion, evaluated anew
+//   in each pass, from its velocities (AimAtEnd). Bodies then move along chords, and the joint stays closed.
 // - A joint that locks translation and rotation solves both as one block.
 // - A row's impulse response includes the reaction of the locks. With L the locks' Jacobian its response is
 //       M^-1 (J^T - L^T (L M^-1 L^T)^-1 L M^-1 J^T):
@@ -21,6 +21,7 @@
 #include <Fulcrum/Constraints/Parts/PointPart.h>
 #include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
 #include <Fulcrum/Constraints/Parts/RowPart.h>
+#include <Fulcrum/Constraints/WarmStart.h>
 
 namespace fulcrum {
 
@@ -33,10 +34,7 @@ struct alignas(32) JointRecord {
     // over the last step, N and N m: of the locks with their reaction to the rows, and of locks and rows together,
     // about the anchor.
     float ownImpulse[3] = {0, 0, 0}, ownAngularImpulse[3] = {0, 0, 0};
-    float wasPulled = 0;  // >= 1: it was far apart in the last step; 0.5: connected to joints that were
-    // s: time left of the period after a teleport of a body of its mechanism. Counted down by the Store stage, except
-    // in steps in which one of its springs is overstretched.
-    float secondsOfTeleport = 0;
+    float ownSpare[2] = {0, 0};
     float lockForce[3] = {0, 0, 0}, lockTorque[3] = {0, 0, 0}, lockSpare[2] = {0, 0};
     float totalForce[3] = {0, 0, 0}, totalTorque[3] = {0, 0, 0}, totalSpare[2] = {0, 0};
 
@@ -45,7 +43,7 @@ struct alignas(32) JointRecord {
         return reinterpret_cast<const float*>(this) + kRowFloats * static_cast<size_t>(row);
     }
     float* Row(int row) { return reinterpret_cast<float*>(this) + kRowFloats * static_cast<size_t>(row); }
-    // Indices in the first row, in the second, in the rows of forces, and of the other members of kOwn.
+    // Indices in the first row, in the second, and in the rows of impulses and forces.
     enum Places {
         kAnchorA = 0,
         kAnchorB = 3,
@@ -54,9 +52,7 @@ struct alignas(32) JointRecord {
         kFrameA = 0,
         kFrameB = 4,
         kForce = 0,
-        kTorque = 3,
-        kWasPulled = 6,
-        kSecondsOfTeleport = 7
+        kTorque = 3
     };
 };
 static_assert(sizeof(JointRecord) == 160);
@@ -68,8 +64,6 @@ FULCRUM_CHECK_PLACE(JointRecord, frameA, JointRecord::kFrames, JointRecord::kFra
 FULCRUM_CHECK_PLACE(JointRecord, frameB, JointRecord::kFrames, JointRecord::kFrameB);
 FULCRUM_CHECK_PLACE(JointRecord, ownImpulse, JointRecord::kOwn, JointRecord::kForce);
 FULCRUM_CHECK_PLACE(JointRecord, ownAngularImpulse, JointRecord::kOwn, JointRecord::kTorque);
-FULCRUM_CHECK_PLACE(JointRecord, wasPulled, JointRecord::kOwn, JointRecord::kWasPulled);
-FULCRUM_CHECK_PLACE(JointRecord, secondsOfTeleport, JointRecord::kOwn, JointRecord::kSecondsOfTeleport);
 FULCRUM_CHECK_PLACE(JointRecord, lockForce, JointRecord::kLocks, JointRecord::kForce);
 FULCRUM_CHECK_PLACE(JointRecord, lockTorque, JointRecord::kLocks, JointRecord::kTorque);
 FULCRUM_CHECK_PLACE(JointRecord, totalForce, JointRecord::kTotal, JointRecord::kForce);
@@ -88,10 +82,11 @@ struct JointRows {
     Real speed;                          // m/s or rad/s: target of J v
     Real lowest, highest;                // N s or N m s, limits of the accumulated impulse
     Real earlier;                        // N s or N m s: sum over earlier substeps
-    // Error correction, see RowSoftness.h: pushRate is massScale beta, 1/s; mostPush the limit of pushRate C, m/s or
-    // rad/s.
+    // Of springs: see RowSoftness.h, pushRate is massScale beta, 1/s. mostPush: limit of corrections of the error, m/s
+    // or rad/s; that of springs is kUnlimited.
     RowSoftness<Real> softness;
     Real pushRate, mostPush;
+    Real speedPart;  // of springs: see SpringSoftness.h
     // Inequality rows with an error above `openAbove` are open: they only limit the approach so that the gap closes no
     // faster than within a substep (gapRate C, 1/s), with `openSoftness`. Springs are not relaxed: their openSoftness
     // is (0, 1).
@@ -101,14 +96,11 @@ struct JointRows {
     Real radial;           // 1: the row acts along the line between the anchors and rotates with it
     Real across, between;  // 1: that JointRow::Pivot
     Vec3<Real> ofA, ofB;   // its directions
-    Real about;            // 1: its error is an angle
-    Real waits;            // 1: inactive in this step, because the joint is far apart
     Real isLock;           // 1: one of the block of lock rows, see JointBatch::lockRowCount
     // Change of the impulses of the block's rows by a unit of impulse.
     Real lockRows[JointRowList::kMostLocks];
     // kg or kg m2: effective mass without the reaction of the block, which gives springs their stiffness.
     Real freeMass;
-    Real pulled;      // N s or N m s: impulse applied to pseudo-velocities, see PullJoints
     uint8_t slot[N];  // 0xFF: no row
     RowHold hold[N];
 };
@@ -121,14 +113,15 @@ struct JointBatch {
     int32_t count;
     uint32_t fixedA, fixedB;          // bit i: the body of lane i is not dynamic
     uint32_t kinematicA, kinematicB;  // bit i: but it moves
-    uint32_t inTree;                  // bit i: the direct solver solves the locks of lane i, see JointTree.h
+    uint32_t high;                    // bit i: of high priority, its error is corrected wholly
     uint32_t strained;                // bit i: at the start of the step, see JointStrain.h
-    uint32_t pushed;                  // bit i: faster than kFastPush at the start of the step, see EnergyLimit.h
     LinearLock linear;
     AngularLock angular;
     uint32_t rowCount;                   // maximum over the lanes
     uint32_t rowRoom;                    // the most that the types may add
     bool rowsTurnWithA, radial, pivots;  // set if any row of any lane has it
+    bool springs;                        // likewise a speedPart
+    uint32_t neighbors[N] = {};          // other joints with rows that a dynamic body of the lane has, at most
     bool turning;                        // inertias of some lane turn from substep to substep: they are read again
     JointRows<N>* rows;
     // Rows that are locks (JointRow::isLock) are solved as one block, by elimination: the response of each includes the
@@ -136,17 +129,15 @@ struct JointBatch {
     // block. Rows from this index on are locks in no lane.
     uint32_t lockRowCount;
     bool overridesMass = false;  // some lane has a MassOverride
-    bool isGuided = false;       // some lane has a body with locked translations
-    Real guided;                 // 1: that lane
 
     InverseMass<Real> massA, massB;
     PointPart<Real> point;
     Vec3<Real> startArmA, startArmB, startOffset;
-    Twist<Real> turnedA, turnedB;
-    Vec3<Real> earlierLinear, earlierAngular;    // sums of the locks' impulses and reactions over earlier substeps
-    Real turns;                                  // 1: the inertia of this lane rotates
-    Vec3<Real> reactionLinear, reactionAngular;  // reaction of the locks to the rows; only if there are rows
-    Twist<Real> wayA, wayB;                      // displacements at the last set-up of the rows
+    Vec3<Real> earlierLinear, earlierAngular;         // sums of the locks' impulses and reactions over earlier substeps
+    Real turns;                                       // 1: an inertia of this lane turns
+    Vec3<Real> reactionLinear, reactionAngular;       // reaction of the locks to the rows; only if there are rows
+    Twist<Real> wayA, wayB;                           // displacements at the last set-up of the rows
+    Vec3<Real> radialArmA, radialArmB, radialOffset;  // the anchors' arms and offset then, if `radial`
 
     RotationEulerPart<Real> rotation;
     Quat<Real> inverseInitial;  // of rotations since the start of the step, for AngularLock::All
@@ -160,14 +151,6 @@ struct JointBatch {
     Vec3<Real> cross[3];
     Sym3<Real> coupledPoint;  // S^-1
     Sym2<Real> coupledLine;
-
-    // For lanes that are far apart: the pseudo-velocity that closes their gap, in place of a bias, see PullJoints.
-    bool far;                            // some lane is far apart
-    Real isFar;                          // >= 1: this one is, see JointRecord::wasPulled
-    Real isDistant;                      // 1: the gap is so large that it is closed without lever arms
-    Real follows;                        // 0.5: its bodies have pseudo-velocities, maybe from other joints
-    Real secondsOfTeleport;              // at the end of the step, see JointRecord
-    Vec3<Real> pullLinear, pullAngular;  // m/s, rad/s
 
     // Scales of a MassOverride; only if `overridesMass`.
     Real massScaleA, inertiaScaleA, massScaleB, inertiaScaleB;
@@ -191,25 +174,19 @@ struct JointSolveSettings {
     float inverseDt;      // 1/s, of the substep
     float elapsed;        // s since the start of the step
     float impulseScale;   // dt of this substep / dt of the last: scales the warm start
-    // Errors are corrected by a soft block, like contact overlaps: see ContactSolveSettings.
-    float pushRate;
-    RowSoftness<float> softness;
-    float maxPushSpeed;  // m/s and rad/s
-    float sleepSeconds;  // SleepSettings::seconds, see JointType::quiet
-    // The same of locks in trees, which are hard: softness would undo part of the direct solution.
-    float treePushRate, maxTreePushSpeed;
-    bool pushes;      // false: errors are corrected by position iterations (CorrectJoints), and rows are hard
+    float maxPushSpeed;   // m/s and rad/s: largest correction of an error, over a substep
+    float sleepSeconds;   // SleepSettings::seconds, see JointType::quiet
     float baumgarte;  // 0..1: fraction of an error corrected per position iteration, limited to maxPushSpeed substepDt
-    bool continues;   // first velocity iteration of a substep other than the step's first
-    bool firstPass;   // first relax iteration of a substep, or first iteration of PullJoints
+    // CorrectJoints: locks are left to DirectIsland; their bias becomes the correction that is wanted.
+    bool leavesLocks;
+    bool continues;  // AddWarmStart: the impulses are those of an earlier substep of the step, not of the last step
 };
 
 // Results of Prepare, and the errors of rows, which Store adds.
 struct JointFindings {
     float linearError = 0, angularError = 0;  // m, rad: largest joint errors
     uint32_t linearJoint = ~0u, angularJoint = ~0u;
-    bool far = false;     // some joints are far apart, see PullJoints
-    bool pushed = false;  // some joints are pushed fast, see EnergyLimit.h
+    bool turning = false;  // the inertia of some jointed body turns from substep to substep
 };
 
 // Fills the batch; its lanes, fixed and kinematic bits, locks and rowRoom must be set.
@@ -217,35 +194,27 @@ template <int N>
 void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
                    const ConstSolverBodies& bodies, const JointSolveSettings& settings, JointFindings& findings);
 
-// Applies the impulses of the last step.
+// Sets the biases of the locks for the current velocities, and adds the impulses of the last substep to those of the
+// bodies, with their work: see WarmStart.h. Sums the impulses of the step.
 template <int N>
-void WarmStartJoints(const JointBatch<N>& batch, BodyState* states);
-
-// Adds the change of the parts' impulses due to their rotation in the last substep. SolveJointVelocities does that
-// itself if settings.continues is set.
+void AddWarmStart(JointBatch<N>& batch, BodyState* states, WarmStart* starts, const JointSolveSettings& settings);
+// Scales the impulses by those of WarmStart.
 template <int N>
-void RotateJointImpulses(JointBatch<N>& batch, BodyState* states);
+void ScaleImpulses(JointBatch<N>& batch, const WarmStart* starts);
 
+// One iteration over locks and rows.
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
-
-// Relax iteration: sets the parts up at the displaced poses and solves the velocities there without error correction.
+// Sets the biases of the locks for the current velocities.
 template <int N>
-void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
-
-// Only the set-up of RelaxJoints, for solves without relax iterations.
-template <int N>
-void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
+void AimJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings);
 
 // A position iteration (Baumgarte): sets the parts up at the displaced poses and corrects the poses, adds no velocity.
-// Joints that are far apart are left to PullJoints.
+// starts: if not null, AddWarmStart follows for the next substep,
+// while all is at hand.
 template <int N>
-void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings);
-
-// One iteration over the pseudo-velocities (split impulses), which are in `pseudo` in place of the velocities: joints
-// that are far apart are pulled together, the others resist.
-template <int N>
-void PullJoints(JointBatch<N>& batch, BodyState* pseudo, const JointSolveSettings& settings);
+void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, WarmStart* starts,
+                   const JointSolveSettings& settings);
 
 // Writes the impulses back, divided by `impulseScale`, the average forces of the step, dt seconds long, and the
 // rotation of the bodies.

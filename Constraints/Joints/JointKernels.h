@@ -1,7 +1,6 @@
 // Shared by the joint kernels: dispatch by a batch's locks, set-up and solve of the parts.
 #pragma once
 
-#include <Fulcrum/Constraints/Joints/FarJoints.h>
 #include <Fulcrum/Constraints/Joints/JointLanes.h>
 
 #include <cmath>
@@ -34,6 +33,35 @@ FULCRUM_FORCE_INLINE Wide<N> ImpulsePointFraction(uint32_t fixedA, uint32_t fixe
         for (int i = 0; i < N; ++i)
             if ((fixedA | fixedB) >> i & 1u) share.Set(i, fixedA >> i & 1u ? 1.0f : 0.0f);
     return share;
+}
+
+// The gap of a lock, no longer than the longer arm. Farther out no impulse acts: lever arms as long as a long gap would
+// spin up small bodies. There angular momentum is not conserved.
+template <class Real>
+FULCRUM_FORCE_INLINE Vec3<Real> WithinArms(const Vec3<Real>& gap, const Vec3<Real>& armA, const Vec3<Real>& armB) {
+    const Real squared = Dot<Real>(gap, gap), most = Max(Dot<Real>(armA, armA), Dot<Real>(armB, armB));
+    const auto isLong = squared > most;
+    if (!isLong.Any()) [[likely]]
+        return gap;
+    return gap * Select(isLong, Sqrt(most / Select(isLong, squared, Real(1.0f))), Real(1.0f));
+}
+
+// The part of an error that a position iteration corrects: all of it where the priority is high, so that those after
+// which it is solved do not matter.
+template <int N>
+FULCRUM_FORCE_INLINE Wide<N> PartCorrected(uint32_t high, const JointSolveSettings& settings) {
+    Wide<N> part(settings.baumgarte);
+    if (high != 0) [[unlikely]]
+        for (int i = 0; i < N; ++i)
+            if (high >> i & 1u) part.Set(i, 1.0f);
+    return part;
+}
+
+// The correction of an error in a position iteration.
+template <class Real>
+FULCRUM_FORCE_INLINE Real Corrected(const Real& error, const Real& part, const JointSolveSettings& settings) {
+    const Real most(settings.maxPushSpeed * settings.substepDt);
+    return Clamp(Real(error * part), -most, most);
 }
 
 // The solver stores no displacement of kinematic bodies: it is velocity times time.
@@ -92,56 +120,39 @@ struct JointErrors {
     Vec2<Real> hinge = Vec2<Real>(Real(0.0f), Real(0.0f));
 };
 
-// Lanes in which a row moves the anchors, not only rotations.
+// The least mobility that translation, or rotation, alone gives in any direction: 0 if an axis is locked in both
+// bodies, or in the only dynamic one.
 template <int N>
-FULCRUM_FORCE_INLINE WideMask<N> MovesAnchors(const JointRows<N>& row) {
-    using Real = Wide<N>;
-    const Real zero(0.0f);
-    const RowJacobian<Real>& j = row.part.GetJacobian();
-    return (Dot<Real>(j.a.linear, j.a.linear) + Dot<Real>(j.b.linear, j.b.linear) > zero) & (row.about <= zero);
+FULCRUM_FORCE_INLINE Wide<N> LeastTranslation(const JointBatch<N>& batch) {
+    const Vec3<Wide<N>> masses = batch.massA.mass + batch.massB.mass;
+    return Min(Min(masses.x(), masses.y()), masses.z());
 }
-// Lanes in which a row has an error that is corrected.
 template <int N>
-FULCRUM_FORCE_INLINE WideMask<N> CorrectsError(const JointRows<N>& row) {
-    return (row.error <= row.openAbove) & (row.mostPush > Wide<N>(0.0f));
-}
-
-// Lanes in which a limit or an overstretched spring pulls the anchors together.
-template <int N>
-FULCRUM_FORCE_INLINE WideMask<N> IsPulledAlong(const JointBatch<N>& batch) {
-    using Real = Wide<N>;
-    const Real zero(0.0f);
-    auto isPulled = zero > zero;
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        const JointRows<N>& row = batch.rows[i];
-        isPulled = isPulled | (MovesAnchors(row) & CorrectsError(row) & (row.mostPush < Real(JointRow::kUnlimited)));
-    }
-    return isPulled;
+FULCRUM_FORCE_INLINE Wide<N> LeastRotation(const JointBatch<N>& batch) {
+    const Sym3<Wide<N>> all = AngularInverseMass(batch.massA, batch.massB);
+    return Min(Min(all.xx, all.yy), all.zz);
 }
 
-// Of a joint that is far apart along its line: the lever arm along it. The way along the line is a gap, too, as far as
-// limits are exceeded. No longer than some radii of gyration, 1 / radius^2 being inverse inertia / inverse mass; bodies
-// without inertia do not spin.
 template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> ReachAlongLine(const Vec3<Real>& offset, const Vec3<Real>& line,
-                                               const InverseMass<Real>& mass) {
-    constexpr float kMostReach = 4;
-    const Real along = Dot<Real>(offset, line),
-               perRadius = (mass.inertia.xx + mass.inertia.yy + mass.inertia.zz) * Real(1.0f / 3),
-               square = Real(kMostReach * kMostReach) * Max(Max(mass.mass.x(), mass.mass.y()), mass.mass.z()),
-               part = Min(Real(1.0f), Sqrt(square / Max(along * along * perRadius, Real(1e-30f))));
-    return line * (along * Select(perRadius > Real(0.0f), part, Real(1.0f)));
+FULCRUM_FORCE_INLINE bool IsLocked(const Real& least) {
+    return (least <= Real(0.0f)).Any();
 }
 
-// The inverse of k with x / (x + damping)^2 instead of 1 / x for each eigenvalue x, in lanes where some is smaller than
-// about the damping. inverse: of k. Locked axes leave directions in which a joint has next to no mobility. To move
-// along one its bodies would have to move many times as fast, and impulses along it grow, without effect, until the
-// direction has rotated, and they have one. Damped least squares as in C. W. Wampler, "Manipulator Inverse Kinematic
-// Solutions Based on Vector Formulations and Damped Least-Squares Methods", whose 1 / (x + damping) is multiplied by x
-// over that: where nothing can move there is no impulse.
+// An eigenvalue of an inverse mass below about this part of the trace is next to none where axes are locked.
+constexpr float kLeastMobility = 1e-4f;
+
+// In lanes where an axis is locked: the inverse of k with x / (x + damping)^2 instead of 1 / x for each eigenvalue x,
+// if some is smaller than about the damping. inverse: of k, as it stays in other lanes. least: see above. trace: of the
+// matrix of which k is a part, to which its rounding errors are relative. Locked axes leave directions in which a joint
+// has next to no mobility. To move along one its bodies would have to move many times as fast, and impulses along it
+// grow, without effect, until the direction has rotated, and they have one. Damped least squares as in C. W. Wampler,
+// "Manipulator Inverse Kinematic Solutions Based on Vector Formulations and Damped Least-Squares Methods", whose
+// 1 / (x + damping) is multiplied by x over that: where nothing can move there is no impulse.
 template <class Real>
-[[gnu::noinline, gnu::cold]] Sym3<Real> DampedInverse(const Sym3<Real>& k, const Sym3<Real>& inverse,
-                                                      const Real& damping) {
+[[gnu::noinline, gnu::cold]] Sym3<Real> InverseWhereLocked(const Sym3<Real>& k, const Sym3<Real>& inverse,
+                                                           const Real& trace, const Real& least) {
+    const Real damping = trace * Real(kLeastMobility);
+    const Sym3<Real> known = SymmetricInverse(k, Vec3<Real>(trace, trace, trace), Real(0.0f));
     Sym3<Real> damped = k;
     damped.xx += damping;
     damped.yy += damping;
@@ -150,40 +161,35 @@ template <class Real>
     const Vec3<Real> x(damped.xx, damped.xy, damped.xz), y(damped.xy, damped.yy, damped.yz),
         z(damped.xz, damped.yz, damped.zz);
     const Vec3<Real> kx = k * x, ky = k * y, kz = k * z;
-    const auto isSmall = Max(Max(inverse.xx, inverse.yy), inverse.zz) * damping > Real(1.0f);
+    const auto isLocked = least <= Real(0.0f), isSmall = Max(Max(known.xx, known.yy), known.zz) * damping > Real(1.0f);
+    const auto choose = [&](const Real& small, const Real& usual, const Real& before) {
+        return Select(isLocked, Select(isSmall, small, usual), before);
+    };
     Sym3<Real> result;
-    result.xx = Select(isSmall, Dot<Real>(x, kx), inverse.xx);
-    result.yy = Select(isSmall, Dot<Real>(y, ky), inverse.yy);
-    result.zz = Select(isSmall, Dot<Real>(z, kz), inverse.zz);
-    result.xy = Select(isSmall, Dot<Real>(x, ky), inverse.xy);
-    result.xz = Select(isSmall, Dot<Real>(x, kz), inverse.xz);
-    result.yz = Select(isSmall, Dot<Real>(y, kz), inverse.yz);
+    result.xx = choose(Dot<Real>(x, kx), known.xx, inverse.xx);
+    result.yy = choose(Dot<Real>(y, ky), known.yy, inverse.yy);
+    result.zz = choose(Dot<Real>(z, kz), known.zz, inverse.zz);
+    result.xy = choose(Dot<Real>(x, ky), known.xy, inverse.xy);
+    result.xz = choose(Dot<Real>(x, kz), known.xz, inverse.xz);
+    result.yz = choose(Dot<Real>(y, kz), known.yz, inverse.yz);
     return result;
 }
+// As of a matrix whose third direction cannot move.
 template <class Real>
-[[gnu::noinline, gnu::cold]] Sym2<Real> DampedInverse(const Sym2<Real>& k, const Sym2<Real>& inverse,
-                                                      const Real& damping) {
-    Sym2<Real> damped = k;
-    damped.xx += damping;
-    damped.yy += damping;
-    damped = SymmetricInverse(damped);
-    const Vec2<Real> x(damped.xx, damped.xy), y(damped.xy, damped.yy), kx = k * x, ky = k * y;
-    const auto isSmall = Max(inverse.xx, inverse.yy) * damping > Real(1.0f);
-    Sym2<Real> result;
-    result.xx = Select(isSmall, x.x() * kx.x() + x.y() * kx.y(), inverse.xx);
-    result.yy = Select(isSmall, y.x() * ky.x() + y.y() * ky.y(), inverse.yy);
-    result.xy = Select(isSmall, x.x() * ky.x() + x.y() * ky.y(), inverse.xy);
-    return result;
+[[gnu::noinline, gnu::cold]] Sym2<Real> InverseWhereLocked(const Sym2<Real>& k, const Sym2<Real>& inverse,
+                                                           const Real& trace, const Real& least) {
+    const auto widened = [](const Sym2<Real>& m) {
+        Sym3<Real> wide;
+        wide.xx = m.xx;
+        wide.yy = m.yy;
+        wide.xy = m.xy;
+        return wide;
+    };
+    const Sym3<Real> result = InverseWhereLocked<Real>(widened(k), widened(inverse), trace, least);
+    return {result.xx, result.yy, result.xy};
 }
 
-// The damping of a matrix with this trace, if a body has locked translations. Others stay bit-identical.
-template <int N>
-FULCRUM_FORCE_INLINE Wide<N> DampingOf(const JointBatch<N>& batch, const Wide<N>& trace) {
-    return batch.guided * (trace * Wide<N>(1e-3f));
-}
-
-// Sets the parts up, hard and without bias, and returns the errors. If joints are far apart, their velocity rows are
-// set up as if the anchors coincided: lever arms as long as the gap would spin up small bodies.
+// Sets the parts up, hard and without bias, and returns the errors.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
     using Real = Wide<N>;
@@ -197,40 +203,40 @@ FULCRUM_FORCE_INLINE JointErrors<Wide<N>> SetUpParts(JointBatch<N>& batch, const
         const Vec3<Real> c = Cross<Real>(place.axisB, b);
         errors.hinge = HingeError<Real>(place.axisA, b, c);
         batch.hinge.CalculateProperties(batch.massA, batch.massB, b, c);
-        if (batch.isGuided) [[unlikely]] {
+        if (const Real least = LeastRotation(batch); IsLocked(least)) [[unlikely]] {
             const Sym3<Real> all = AngularInverseMass(batch.massA, batch.massB);
-            const Vec3<Real>&b2 = batch.hinge.GetB2(), c2 = batch.hinge.GetC2();
-            const Sym2<Real> k{Between(c2, all, c2), Between(b2, all, b2), -Between(c2, all, b2)};
-            batch.hinge.SetEffectiveMass(DampedInverse<Real>(k, batch.hinge.GetEffectiveMass(),
-                                                             DampingOf(batch, Real(all.xx + all.yy + all.zz))));
+            const Sym2<Real> k{Between(c, all, c), Between(b, all, b), -Between(c, all, b)};
+            batch.hinge.SetEffectiveMass(
+                InverseWhereLocked(k, batch.hinge.GetEffectiveMass(), Real(all.xx + all.yy + all.zz), least));
         }
     }
     if constexpr (kLinear == LinearLock::Point) {
         const Real share = ImpulsePointFraction<N>(batch.fixedA, batch.fixedB);
         errors.point = place.offset;
-        const Vec3<Real> between = batch.far ? ZeroUnless<Real>(batch.isFar <= Real(0.5f), place.offset) : place.offset;
+        const Vec3<Real> between = WithinArms<Real>(place.offset, place.armA, place.armB);
         batch.point.CalculateProperties(batch.massA, batch.massB, Vec3<Real>(place.armA + between * share),
                                         Vec3<Real>(place.armB - between * (Real(1.0f) - share)));
-        if (kAngular == AngularLock::None && batch.isGuided) [[unlikely]] {
+        if (const Real least = LeastTranslation(batch); kAngular == AngularLock::None && IsLocked(least)) [[unlikely]] {
             const Sym3<Real> k =
                 PointInverseMass(batch.massA, batch.massB, batch.point.GetArm1(), batch.point.GetArm2());
             batch.point.SetEffectiveMass(
-                DampedInverse<Real>(k, batch.point.GetEffectiveMass(), DampingOf(batch, Real(k.xx + k.yy + k.zz))));
+                InverseWhereLocked(k, batch.point.GetEffectiveMass(), Real(k.xx + k.yy + k.zz), least));
         }
     }
     if constexpr (kLinear == LinearLock::Line) {
         const Vec3<Real> n1 = Straightened<Real>(place.lineNormal, place.line);
         const Vec3<Real> n2 = Cross<Real>(place.line, n1);
         errors.line = Vec2<Real>(Dot<Real>(place.offset, n1), Dot<Real>(place.offset, n2));
-        Vec3<Real> reach = place.offset;
-        if (batch.far) {
-            const Real along = Dot<Real>(place.offset, place.line);
-            const Vec3<Real> onLine = place.line * along,
-                             shorter = ReachAlongLine<Real>(place.offset, place.line, batch.massA);
-            const auto isFar = batch.isFar > Real(0.5f), isPulled = IsPulledAlong(batch);
-            for (int k = 0; k < 3; ++k) reach[k] = Select(isFar, Select(isPulled, shorter[k], onLine[k]), reach[k]);
+        const Vec3<Real> across = n1 * errors.line.x() + n2 * errors.line.y(),
+                         onLine = place.armA + place.offset - across,
+                         armA = onLine + WithinArms<Real>(across, onLine, place.armB);
+        batch.line.CalculateProperties(batch.massA, batch.massB, {armA, place.armB, n1, n2});
+        if (const Real least = LeastTranslation(batch); kAngular == AngularLock::None && IsLocked(least)) [[unlikely]] {
+            const Sym3<Real> all = PointInverseMass(batch.massA, batch.massB, armA, place.armB);
+            const Sym2<Real> k{Between(n1, all, n1), Between(n2, all, n2), Between(n1, all, n2)};
+            batch.line.SetEffectiveMass(
+                InverseWhereLocked(k, batch.line.GetEffectiveMass(), Real(all.xx + all.yy + all.zz), least));
         }
-        batch.line.CalculateProperties(batch.massA, batch.massB, {Vec3<Real>(place.armA + reach), place.armB, n1, n2});
     }
     return errors;
 }
@@ -325,18 +331,17 @@ FULCRUM_FORCE_INLINE void SetUpCoupling(JointBatch<N>& batch) {
             }
         }
         // Translation alone: what locks of axes leave of it.
-        const Vec3<Real> masses = batch.massA.mass + batch.massB.mass;
-        const Real least = Min(Min(masses.x(), masses.y()), masses.z());
+        const Real least = LeastTranslation(batch);
         if constexpr (kLinear == LinearLock::Point) {
             batch.coupledPoint = SymmetricInverse(s, scale, least);
-            if (batch.isGuided) [[unlikely]]
-                batch.coupledPoint = DampedInverse<Real>(s, batch.coupledPoint,
-                                                         DampingOf(batch, Real(scale.x() + scale.y() + scale.z())));
+            if (IsLocked(least)) [[unlikely]]
+                batch.coupledPoint =
+                    InverseWhereLocked(s, batch.coupledPoint, Real(scale.x() + scale.y() + scale.z()), least);
         } else {
             const Sym2<Real> flat{s.xx, s.yy, s.xy};
             batch.coupledLine = SymmetricInverse(flat, Vec2<Real>(scale.x(), scale.y()), least);
-            if (batch.isGuided) [[unlikely]]
-                batch.coupledLine = DampedInverse<Real>(flat, batch.coupledLine, DampingOf(batch, Real(scale.x())));
+            if (IsLocked(least)) [[unlikely]]
+                batch.coupledLine = InverseWhereLocked(flat, batch.coupledLine, scale.x(), least);
         }
     }
 }
@@ -522,6 +527,15 @@ FULCRUM_FORCE_INLINE void RotateRadialRow(const JointBatch<N>& batch, JointRows<
     row.error = Select(turns, row.startError + sign * (squared * inverse - start), row.error);
 }
 
+// Rotates radial rows with the line between the anchors, if they are apart.
+template <int N>
+FULCRUM_FORCE_INLINE void RotateRadialRows(JointBatch<N>& batch, const JointPlace<Wide<N>>& place) {
+    batch.radialArmA = place.armA;
+    batch.radialArmB = place.armB;
+    batch.radialOffset = place.offset;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) RotateRadialRow(batch, batch.rows[i], place);
+}
+
 // Adds the reaction of the rows that are locks to the responses of the others, and of those before it to each of them.
 template <int N>
 FULCRUM_FORCE_INLINE void AddLockRowReactions(JointBatch<N>& batch) {
@@ -574,6 +588,21 @@ FULCRUM_FORCE_INLINE void RowImpulses(const JointBatch<N>& batch, Wide<N> (&impu
     }
 }
 
+// In lanes where an axis is locked, deactivates rows to which what is locked leaves next to no mobility.
+template <int N>
+[[gnu::noinline, gnu::cold]] void DeactivateLockedRows(JointBatch<N>& batch, const Wide<N>& least) {
+    using Real = Wide<N>;
+    const auto all = [](const Twist<Real>& j, const InverseMass<Real>& m) {
+        return Dot<Real>(j.linear, j.linear) * (m.mass.x() + m.mass.y() + m.mass.z()) +
+               Dot<Real>(j.angular, j.angular) * (m.inertia.xx + m.inertia.yy + m.inertia.zz);
+    };
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        RowPart<Real>& part = batch.rows[i].part;
+        const Real trace = all(part.GetJacobian().a, batch.massA) + all(part.GetJacobian().b, batch.massB);
+        part.Deactivate((least <= Real(0.0f)) & (part.GetEffectiveMass() * trace * Real(kLeastMobility) > Real(1.0f)));
+    }
+}
+
 // After the set-up of the locks: responses and effective masses of the rows, and the reaction of the locks to their
 // impulses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -597,108 +626,142 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
         }
     }
     if (batch.lockRowCount > 0) AddLockRowReactions(batch);
+    if (const Real least = Min(LeastTranslation(batch), LeastRotation(batch)); IsLocked(least)) [[unlikely]]
+        DeactivateLockedRows(batch, least);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        if (batch.far) row.part.Deactivate(row.waits > Real(0.5f));
         batch.reactionLinear += row.lockLinear * row.part.GetTotalLambda();
         batch.reactionAngular += row.lockAngular * row.part.GetTotalLambda();
     }
 }
 
-// Lanes in which a row's error is corrected in the poses, without velocity. A push along an axis that rotates with the
-// bodies could not be removed by relax iterations, whose axis is another one: what is left is along the motion, and
-// bodies that slid along the edge of a cone were accelerated by it without bound.
+// After SetUpRows: bias and softness of the rows. Errors of locks and limits are corrected in the poses
+// (CorrectJoints); springs keep their bias, which is their force. states: velocities at the start of a substep.
 template <int N>
-FULCRUM_FORCE_INLINE WideMask<N> CorrectsPose(const JointRows<N>& row) {
+FULCRUM_FORCE_INLINE void SetRowBias(JointBatch<N>& batch, const BodyState* states) {
     using Real = Wide<N>;
-    return (row.across + row.between > Real(0.5f)) & (row.mostPush < Real(JointRow::kUnlimited));
-}
-
-// After SetUpRows: bias and softness of the rows for velocity iterations, and for relax iterations, which do not
-// correct errors.
-template <int N>
-FULCRUM_FORCE_INLINE void SetRowPush(JointBatch<N>& batch, const JointSolveSettings& settings) {
-    using Real = Wide<N>;
+    Twist<Real> a, b;
+    if (batch.springs) {
+        const Velocities<N> v(batch, states);
+        a = v.a;
+        b = v.b;
+    }
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const RowSoftness<Real>&closed = row.softness, &open = row.openSoftness;
-        Real push = Clamp(row.pushRate * row.error, -row.mostPush, row.mostPush);
-        // Springs keep their bias in any case: it is their force.
-        if (!settings.pushes) push = Select(row.mostPush < Real(JointRow::kUnlimited), Real(0.0f), push);
-        if (batch.pivots) push = Select(CorrectsPose(row), Real(0.0f), push);
-        push = push - closed.massScale * row.speed;
+        Real force = Select(row.mostPush < Real(JointRow::kUnlimited), Real(0.0f), row.pushRate * row.error);
+        if (batch.springs) force += row.speedPart * RelativeMotion<>(row.part.GetJacobian(), a, b);
         const Real gap = open.massScale * (row.error * row.gapRate);
         const auto isOpen = row.error > row.openAbove;
-        row.part.SetBias(Select(isOpen, gap, push), {Select(isOpen, open.massScale, closed.massScale),
-                                                     Select(isOpen, open.impulseScale, closed.impulseScale)});
+        row.part.SetBias(
+            Select(isOpen, gap, Real(force - closed.massScale * row.speed)),
+            {Select(isOpen, open.massScale, closed.massScale), Select(isOpen, open.impulseScale, closed.impulseScale)});
     }
 }
+
+// What velocities of two bodies turn in a substep beyond their first order: locks aim at the end of the substep, so
+// that bodies move along the chords of their arcs.
+template <class Real>
+struct Arcs {
+    Twist<Real> a, b;
+    Real h;  // s
+    // Faster bodies aim at less: all products of two velocities are scaled by the square of this, which is 1 up to an
+    // angle of half a radian in the substep, and then falls with it. What an aim changes of a velocity changes the aim
+    // of the next pass by as much as the angle: beyond a fraction of a radian passes would diverge.
+    Real part;
+    Vec3<Real> turnA, turnB;  // rad/s: angular velocities times `part`
+
+    FULCRUM_FORCE_INLINE Arcs(const Twist<Real>& ofA, const Twist<Real>& ofB, float substepDt)
+        : a(ofA), b(ofB), h(substepDt) {
+        constexpr float kLargest = 0.25f;  // rad, squared
+        const Real most(kLargest), squaredA = Dot<Real>(a.angular, a.angular) * (h * h),
+                                   squaredB = Dot<Real>(b.angular, b.angular) * (h * h);
+        part = Sqrt(most / Max(Max(squaredA, squaredB), most));
+        turnA = a.angular * part;
+        turnB = b.angular * part;
+        const auto set = [&](const Real& squared, Real& sine, Real& cosine) FULCRUM_FORCE_INLINE_LAMBDA {
+            const Real t = Min(squared, most);
+            sine = -t * (Real(1.0f / 6) - t * Real(1.0f / 120)) * part;
+            cosine = (Real(0.5f) - t * (Real(1.0f / 24) - t * Real(1.0f / 720))) * h;
+        };
+        set(squaredA, sineA_, cosineA_);
+        set(squaredB, sineB_, cosineB_);
+    }
+
+    // Of an arm of A or of B, m, per second: ((R(w h) - 1) r - h w x r) / h.
+    FULCRUM_FORCE_INLINE Vec3<Real> OfA(const Vec3<Real>& arm) const { return Of(turnA, arm, sineA_, cosineA_); }
+    FULCRUM_FORCE_INLINE Vec3<Real> OfB(const Vec3<Real>& arm) const { return Of(turnB, arm, sineB_, cosineB_); }
+
+private:
+    // (sin(t) / t - 1) w x r + h (1 - cos t) / t^2 w x (w x r) for the angle t = |w| h.
+    FULCRUM_FORCE_INLINE static Vec3<Real> Of(const Vec3<Real>& w, const Vec3<Real>& arm, const Real& sine,
+                                              const Real& cosine) {
+        const Vec3<Real> along = Cross<Real>(w, arm);
+        return along * sine + Cross<Real>(w, along) * cosine;
+    }
+
+    Real sineA_, cosineA_, sineB_, cosineB_;
+};
+
+// The rows that act along the line between the anchors: locks and limits only, springs keep their force. With L the
+// distance: h v^2 / 2L of the velocity v across the line, and the anchors' own arcs along it.
 template <int N>
-FULCRUM_FORCE_INLINE void SetRowRelax(JointBatch<N>& batch) {
+FULCRUM_FORCE_INLINE void AimRadialRows(JointBatch<N>& batch, const Arcs<Wide<N>>& arcs) {
     using Real = Wide<N>;
+    const Real zero(0.0f);
+    const Vec3<Real> way = arcs.OfB(batch.radialArmB) - arcs.OfA(batch.radialArmA);
+    const Vec3<Real> v = PointMotion(arcs.a, arcs.b, batch.radialArmA, batch.radialArmB) * arcs.part;
+    const Real squared = Dot<Real>(batch.radialOffset, batch.radialOffset);
+    const auto isApart = squared > Real(1e-10f);
+    const Real inverse = Select(isApart, Real(1.0f) / Sqrt(Select(isApart, squared, Real(1.0f))), zero);
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
-        const Real &massScale = row.openSoftness.massScale, zero(0.0f);
-        row.part.SetBias(massScale * (Max(row.error, zero) * row.gapRate - row.speed), {massScale, zero});
+        // Opposite to the line for an upper limit.
+        const Vec3<Real>& n = row.part.GetJacobian().b.linear;
+        const Real along = Dot<Real>(v, n), across = Max(Dot<Real>(v, v) - along * along, zero),
+                   outward = Dot<Real>(n, batch.radialOffset);
+        const Real curve = arcs.h * Real(0.5f) * across * inverse;
+        const auto aims =
+            (row.radial > Real(0.5f)) & (row.mostPush > zero) & (row.mostPush < Real(JointRow::kUnlimited));
+        const Real gap = Max(row.error, zero) * row.gapRate;
+        const Real bias = gap + Dot<Real>(n, way) + Select(outward < zero, -curve, curve);
+        row.part.SetHardBias(bias, aims);
     }
 }
 
-template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE WideMask<N> IsPushedFast(const JointBatch<N>& batch) {
+// The bias of a line lock. The line turns with A while the anchor of B moves along it.
+template <int N>
+FULCRUM_FORCE_INLINE Vec2<Wide<N>> LineAim(const JointBatch<N>& batch, const Arcs<Wide<N>>& arcs) {
     using Real = Wide<N>;
-    Real fastest(0.0f);
-    const auto note = [&](const auto& push) FULCRUM_FORCE_INLINE_LAMBDA {
-        for (int k = 0; k < push.size(); ++k) fastest = Max(fastest, Abs(push[k]));
-    };
-    if constexpr (kAngular == AngularLock::All) note(batch.rotation.GetBias());
-    if constexpr (kAngular == AngularLock::Axis) note(batch.hinge.GetBias());
-    if constexpr (kLinear == LinearLock::Point) note(batch.point.GetBias());
-    if constexpr (kLinear == LinearLock::Line) note(batch.line.GetBias());
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        const JointRows<N>& row = batch.rows[i];
-        const auto pushes = (row.error <= row.openAbove) & (row.mostPush < Real(JointRow::kUnlimited));
-        const Real push = Min(Abs(row.pushRate * row.error), row.mostPush);
-        fastest = Max(fastest, Select(pushes, push, Real(0.0f)));
-    }
-    return IsPushedFast(batch, fastest);
+    const auto& frame = batch.line.GetFrame();
+    const Vec3<Real> apart = PointMotion(arcs.a, arcs.b, frame.r1PlusU, frame.r2),
+                     way = arcs.OfB(frame.r2) - arcs.OfA(frame.r1PlusU) -
+                           Cross<Real>(arcs.turnA, apart) * (arcs.h * arcs.part);
+    return Vec2<Real>(Dot<Real>(frame.axis1, way), Dot<Real>(frame.axis2, way));
 }
 
-// Sets the error correction of the next velocity iterations. Locks that are far apart get a pull (pseudo-velocity)
-// instead.
+// Sets the biases of the locks and of radial rows for these velocities.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE void Soften(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors,
-                                 const JointSolveSettings& settings) {
+FULCRUM_FORCE_INLINE void AimAtEnd(JointBatch<N>& batch, const Twist<Wide<N>>& a, const Twist<Wide<N>>& b,
+                                   const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    RowSoftness<Real> softness{Real(settings.softness.massScale), Real(settings.softness.impulseScale)};
-    Real rate(settings.pushes ? settings.pushRate : 0.0f);
-    Real most(settings.maxPushSpeed);
-    if (batch.inTree != 0) {
-        const auto isExact = LanesWhere<N>([&](int i) { return (batch.inTree >> i & 1) != 0; });
-        softness.massScale = Select(isExact, Real(1.0f), softness.massScale);
-        softness.impulseScale = Select(isExact, Real(0.0f), softness.impulseScale);
-        rate = Select(isExact, Real(settings.treePushRate), rate);
-        most = Select(isExact, Real(settings.maxTreePushSpeed), most);
+    if constexpr (kAngular == AngularLock::All) batch.rotation.SetBias(Zero<Real>(), {});
+    constexpr bool kAims = kLinear != LinearLock::None || kAngular == AngularLock::Axis;
+    if (!kAims && !batch.radial) return;
+    const Arcs<Real> arcs(a, b, settings.substepDt);
+    if constexpr (kLinear == LinearLock::Point)
+        batch.point.SetBias(arcs.OfB(batch.point.GetArm2()) - arcs.OfA(batch.point.GetArm1()), {});
+    if constexpr (kLinear == LinearLock::Line) batch.line.SetBias(LineAim(batch, arcs), {});
+    if constexpr (kAngular == AngularLock::Axis) {
+        const Vec3<Real>&b2 = batch.hinge.GetB2(), &c2 = batch.hinge.GetC2(), axis = Cross<Real>(b2, c2);
+        const Vec3<Real> axisWay = arcs.OfA(axis), axisMotion = Cross<Real>(arcs.turnA, axis) + axisWay;
+        const auto aim = [&](const Vec3<Real>& across) FULCRUM_FORCE_INLINE_LAMBDA {
+            const Vec3<Real> way = arcs.OfB(across), motion = Cross<Real>(arcs.turnB, across) + way;
+            return Dot<Real>(axisWay, across) + Dot<Real>(axis, way) + Dot<Real>(axisMotion, motion) * arcs.h;
+        };
+        batch.hinge.SetBias(Vec2<Real>(aim(b2), aim(c2)), {});
     }
-    const auto push = [&](const auto& error) {
-        auto bias = error;
-        for (int k = 0; k < bias.size(); ++k) bias[k] = Clamp<Real>(error[k] * rate, -most, most);
-        return bias;
-    };
-    const auto soften = [&](auto& part, const auto& error, Vec3<Real>& pull) {
-        auto bias = push(error);
-        if (batch.far)
-            for (int k = 0; k < bias.size(); ++k) {
-                const auto isFar = batch.isFar > Real(0.5f);
-                pull[k] = Select(isFar, PullSpeed<Real>(error[k], settings), Real(0.0f));
-                bias[k] = Select(isFar, Real(0.0f), bias[k]);
-            }
-        part.SetBias(bias, softness);
-    };
-    if constexpr (kAngular == AngularLock::All) soften(batch.rotation, errors.rotation, batch.pullAngular);
-    if constexpr (kAngular == AngularLock::Axis) soften(batch.hinge, errors.hinge, batch.pullAngular);
-    if constexpr (kLinear == LinearLock::Point) soften(batch.point, errors.point, batch.pullLinear);
-    if constexpr (kLinear == LinearLock::Line) soften(batch.line, errors.line, batch.pullLinear);
-    SetRowPush(batch, settings);
+    if (batch.radial) AimRadialRows(batch, arcs);
 }
 
 // squared: m2 or rad2, by lane; the first `count` lanes are the joints with these indices.

@@ -6,6 +6,7 @@
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 
 #include <cmath>
+#include <limits>
 
 namespace fulcrum::joints {
 
@@ -48,29 +49,51 @@ struct Velocities {
     Twist<Wide<N>> a, b;
 
     template <class Batch>
-    FULCRUM_FORCE_INLINE Velocities(const Batch& batch, BodyState* states) {
-        Motion<N> motion;
-        motion.template Gather<BodyRow::Velocity>(batch.bodyA, states);
-        a = motion.Get();
-        motion.template Gather<BodyRow::Velocity>(batch.bodyB, states);
-        b = motion.Get();
+    FULCRUM_FORCE_INLINE Velocities(const Batch& batch, const BodyState* states) {
+        a = Of(batch.bodyA, states);
+        b = Of(batch.bodyB, states);
+    }
+
+private:
+    FULCRUM_FORCE_INLINE static Twist<Wide<N>> Of(const uint32_t (&bodies)[N], const BodyState* states) {
+        const float* rows[N];
+        Wide<N> row[8];
+        for (int i = 0; i < N; ++i) rows[i] = states[bodies[i]].VelocityRow();
+        GatherRows<N>(rows, row);
+        return {VectorAt<BodyState::kLinear>(row), VectorAt<BodyState::kAngular>(row)};
     }
 };
 
-// Adds to the displacements of the bodies.
+// Adds to the displacements of the bodies, NaN as zero, so that one bad joint cannot spread it to bodies. Where
+// inertias turn with them, so do angular velocities, which keeps their kinetic energy. poseA, poseB: as gathered.
 template <int N, class Batch>
-FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, const Twist<Wide<N>>& byA,
-                                     const Twist<Wide<N>>& byB) {
-    const auto move = [&](const uint32_t(&body)[N], const Twist<Wide<N>>& by, uint32_t fixed) {
-        Motion<N> pose;
-        pose.template Gather<BodyRow::Displacement>(body, states);
-        const Twist<Wide<N>> from = pose.Get();
-        pose.Set({from.linear + by.linear, from.angular + by.angular});
-        SetHalfTurn<Wide<N>>(pose.row);
+FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, Motion<N>& poseA, Motion<N>& poseB,
+                                     const Twist<Wide<N>>& byA, const Twist<Wide<N>>& byB) {
+    using Real = Wide<N>;
+    const auto move = [&](const uint32_t(&body)[N], Motion<N>& pose, const Twist<Real>& wanted, uint32_t fixed) {
+        const auto isKnown = Dot<Real>(wanted.linear, wanted.linear) + Dot<Real>(wanted.angular, wanted.angular) <
+                             Real(std::numeric_limits<float>::infinity());
+        const Twist<Real> by{ZeroUnless<Real>(isKnown, wanted.linear), ZeroUnless<Real>(isKnown, wanted.angular)};
+        const Twist<Real> from = pose.Get();
+        Vec3<Real> rotation = TurnedSlightly<Real>(
+            from.angular, Vec2<Real>(pose.row[BodyState::kHalfTurn], pose.row[BodyState::kHalfTurn + 1]), by.angular);
+        const auto isFar = Dot<Real>(from.angular, from.angular) > Real(kFarthestTurn * kFarthestTurn);
+        for (int k = 0; k < 3; ++k) rotation[k] = Select(isFar, Real(from.angular[k] + by.angular[k]), rotation[k]);
+        pose.Set({from.linear + by.linear, rotation});
+        SetHalfTurn<Real>(pose.row);
         pose.Scatter(batch.count, fixed);
+        if (!batch.turning) return;
+        Motion<N> motion;
+        motion.template Gather<BodyRow::Velocity>(body, states);
+        const Twist<Real> velocity = motion.Get();
+        const Vec2<Real> half = HalfTurnOf<Real>(by.angular);
+        const Vec3<Real> turn = by.angular * (half.x() * batch.turns),
+                         across = Cross<Real>(turn, velocity.angular) * Real(2.0f);
+        motion.Set({velocity.linear, velocity.angular + across * half.y() + Cross<Real>(turn, across)});
+        motion.Scatter(batch.count, fixed);
     };
-    move(batch.bodyA, byA, batch.fixedA);
-    move(batch.bodyB, byB, batch.fixedB);
+    move(batch.bodyA, poseA, byA, batch.fixedA);
+    move(batch.bodyB, poseB, byB, batch.fixedB);
 }
 
 // Calls change(velocities of A, of B) and scatters them back.
@@ -91,10 +114,6 @@ FULCRUM_FORCE_INLINE auto GatherMasses(JointBatch<N>& batch, const BodyMass* mas
     const Wide<N> flagsA = GatherMass<N>(batch.bodyA, masses, batch.massA),
                   flagsB = GatherMass<N>(batch.bodyB, masses, batch.massB);
     const auto turns = TurningLanes<N>(flagsA) | TurningLanes<N>(flagsB);
-    batch.isGuided = AnyLocked<N>(flagsA) || AnyLocked<N>(flagsB);
-    if (batch.isGuided) [[unlikely]]
-        for (int i = 0; i < N; ++i)
-            batch.guided.Set(i, std::fmax(flagsA[i], flagsB[i]) >= float{BodyMass::kLockedX} ? 1.0f : 0.0f);
     if (batch.overridesMass) {
         ScaleMass(batch.massA, batch.massScaleA, batch.inertiaScaleA);
         ScaleMass(batch.massB, batch.massScaleB, batch.inertiaScaleB);

@@ -30,7 +30,6 @@ struct JointRow {
         jacobian;             // of an axis, angle, gear, rack-and-pinion or independent-axis part (Constraints/Parts)
     float error = 0;          // C at the start of the step, m or rad
     float speed = 0;          // m/s or rad/s
-    bool yields = true;       // soft like the locks of joints; false if a motor presses against it
     bool turnsWithA = false;  // J rotates with A from substep to substep; else it is constant
     bool about = false;       // C is an angle, although it may depend on positions, too; set by SetAbout
     bool radial = false;      // acts along the line from A's anchor to B's and rotates with it

@@ -51,6 +51,7 @@ void ClearLane(JointRows<N>& rows, int lane) {
                        &rows.softness.impulseScale,
                        &rows.pushRate,
                        &rows.mostPush,
+                       &rows.speedPart,
                        &rows.openAbove,
                        &rows.gapRate,
                        &rows.openSoftness.massScale,
@@ -59,22 +60,18 @@ void ClearLane(JointRows<N>& rows, int lane) {
                        &rows.radial,
                        &rows.across,
                        &rows.between,
-                       &rows.about,
-                       &rows.waits,
                        &rows.isLock})
         x->Set(lane, 0.0f);
     rows.slot[lane] = 0xFF;
     rows.hold[lane] = RowHold::Nothing;
 }
 
-// Sets everything that does not depend on the mass, for a row whose error is corrected at the locks' rate.
+// Sets what does not depend on the mass, for a row whose error is corrected like that of locks.
 template <int N>
-void SetPush(JointRows<N>& rows, int lane, bool yields, const JointSolveSettings& s) {
-    const float massScale = yields ? s.softness.massScale : 1.0f;
-    rows.softness.massScale.Set(lane, massScale);
-    rows.softness.impulseScale.Set(lane, yields ? s.softness.impulseScale : 0.0f);
-    rows.pushRate.Set(lane, massScale * s.pushRate);
-    rows.mostPush.Set(lane, massScale * s.maxPushSpeed);
+void SetHard(JointRows<N>& rows, int lane, const JointSolveSettings& s) {
+    rows.softness.massScale.Set(lane, 1.0f);
+    rows.softness.impulseScale.Set(lane, 0.0f);
+    rows.mostPush.Set(lane, s.maxPushSpeed);
 }
 
 // Sets everything of a lane's row that does not depend on the effective mass, which is set up with the locks. Jacobian
@@ -97,7 +94,7 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.error.Set(lane, row.error);
     rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
     if (hard) {
-        SetPush(rows, lane, row.yields, s);
+        SetHard(rows, lane, s);
     } else {
         rows.softness.massScale.Set(lane, 1.0f);
         rows.mostPush.Set(lane, unlimited);
@@ -113,46 +110,46 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.between.Set(lane, row.pivot == JointRow::Pivot::Between ? 1.0f : 0.0f);
     SetLane(rows.ofA, lane, row.ofA);
     SetLane(rows.ofB, lane, row.ofB);
-    rows.about.Set(lane, row.about ? 1.0f : 0.0f);
     if (hard) rows.hold[lane] = IsAngle(row) ? RowHold::Angle : RowHold::Distance;
     rows.isLock.Set(lane, row.isLock ? 1.0f : 0.0f);
     if (std::isfinite(previousImpulse)) impulse.Set(lane, Clamp(previousImpulse * s.impulseScale, lowest, highest));
 }
 
-// Whether a spring is stretched so far that it would accelerate bodies beyond the pull speed of joints; the threshold
-// is larger than that of locks that are far apart.
+// The springs that act on a body along the same way as this row, at most: with w the row's unit direction of motion, by
+// masses, the sum of |w . w'| over the springs of the joint, and 1 for each neighbor.
 template <int N>
-bool IsOverstretched(const JointBatch<N>& batch, const JointRow& row, int lane, const SpringConstants<float>& spring,
-                     const JointSolveSettings& s) {
-    constexpr float kFastest = 1.5f;
-    if ((row.error < 0.0f ? row.maxForce : -row.minForce) < JointRow::kUnlimited) return false;
-    if (row.kind == JointRow::Kind::SpringAtLeast && row.error > 0.0f) return false;
-    if (row.error * row.error * s.pushRate * s.pushRate <= s.maxPushSpeed * s.maxPushSpeed) return false;
-    float inverse = 0;
-    for (int k = 0; k < 3; ++k)
-        inverse += row.jacobian.a.linear[k] * row.jacobian.a.linear[k] * batch.massA.mass[k][lane] +
-                   row.jacobian.b.linear[k] * row.jacobian.b.linear[k] * batch.massB.mass[k][lane];
-    const float squared = spring.squaredFrequency > 0.0f ? spring.squaredFrequency : spring.stiffness * inverse;
-    const float fastest = kFastest * s.maxPushSpeed;
-    return inverse > 0.0f && row.error * row.error * squared > fastest * fastest;
+float CoupledSprings(const JointBatch<N>& batch, const JointRowList& list, uint32_t index, int lane) {
+    using Kind = JointRow::Kind;
+    const auto& part = batch.rows[index].part;
+    const RowJacobian<float>& j = list.rows[index].jacobian;
+    const float mass = part.GetEffectiveMass()[lane];
+    float sum = 1.0f + static_cast<float>(batch.neighbors[lane]);
+    for (uint32_t i = 0; i < list.count; ++i) {
+        const JointRow& row = list.rows[i];
+        if (i == index || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) continue;
+        const auto& other = batch.rows[i].part;
+        const Twist<Wide<N>>&a = other.GetResponse().a, &b = other.GetResponse().b;
+        float motion = 0.0f;
+        for (int k = 0; k < 3; ++k)
+            motion += (j.b.linear[k] * b.linear[k][lane] + j.b.angular[k] * b.angular[k][lane]) -
+                      (j.a.linear[k] * a.linear[k][lane] + j.a.angular[k] * a.angular[k][lane]);
+        sum += Min(Abs(motion) * Sqrt(mass * other.GetEffectiveMass()[lane]), 1.0f);
+    }
+    return sum;
 }
 
-// Sets springs up; the masses must be known. Springs are not relaxed, since their bias is their force. Springs that a
-// teleport has overstretched are pulled like locks. Returns whether there are any.
+// Sets springs up; the masses must be known. Springs are not relaxed, since their bias is their force.
 template <int N>
-bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const JointRow& row, bool wasTeleported,
-                const JointSolveSettings& s) {
+void SoftenLane(JointBatch<N>& batch, const JointRowList& list, uint32_t index, int lane, const JointSolveSettings& s) {
     using Kind = JointRow::Kind;
-    if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return false;
+    JointRows<N>& rows = batch.rows[index];
+    const JointRow& row = list.rows[index];
+    if (rows.slot[lane] == 0xFF || (row.kind != Kind::Spring && row.kind != Kind::SpringAtLeast)) return;
     const float mass = rows.part.GetEffectiveMass()[lane];
     SpringConstants<float> constants = ToConstants(row.spring);
     // Limited to the stiffest spring that a substep can resolve.
     if (!(constants.squaredFrequency > 0.0f || constants.stiffness > 0.0f))
         constants = FrequencyConstants(0.25f * s.inverseDt, 1.0f);
-    if (wasTeleported && IsOverstretched(batch, row, lane, constants, s)) {
-        SetPush(rows, lane, true, s);
-        return true;
-    }
     // The stiffness does not change where a path curves and B must rotate along: that would add energy. Where the curve
     // is so tight that it nearly locks the row, rounding may deactivate it in this substep but not in the next.
     if (batch.lockRowCount > 0 && batch.rows[0].isLock[lane] > 0.5f) {
@@ -161,13 +158,15 @@ bool SoftenLane(const JointBatch<N>& batch, JointRows<N>& rows, int lane, const 
         constants.squaredFrequency *= lighter;
         constants.decayRate *= lighter;
     }
-    const auto spring = SpringSoftnessOf<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants);
+    const auto spring = SpringSoftnessOf<float>(s.substepDt, mass > 0.0f ? 1.0f / mass : 0.0f, constants,
+                                                CoupledSprings(batch, list, index, lane));
     rows.softness.massScale.Set(lane, spring.softness.massScale);
     rows.softness.impulseScale.Set(lane, spring.softness.impulseScale);
     rows.pushRate.Set(lane, spring.errorRate);
+    rows.speedPart.Set(lane, spring.speedPart);
+    batch.springs |= spring.speedPart != 0.0f;
     rows.openSoftness.massScale.Set(lane, 0.0f);
     rows.openSoftness.impulseScale.Set(lane, 1.0f);
-    return false;
 }
 
 // Collects the rows of the types and distributes them to the lanes. The parts must be set up.
@@ -175,7 +174,7 @@ template <LinearLock kLinear, AngularLock kAngular, int N>
 void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const* types,
               const ConstSolverBodies& bodies, const JointSolveSettings& settings) {
     batch.rowCount = batch.lockRowCount = 0;
-    batch.rowsTurnWithA = batch.radial = batch.pivots = false;
+    batch.rowsTurnWithA = batch.radial = batch.pivots = batch.springs = false;
     batch.wayA = batch.wayB = {};
     if (batch.rowRoom == 0) return;
     JointRowList lists[N];
@@ -234,81 +233,14 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     }
     SetUpRows<kLinear, kAngular>(batch);
     for (int lane = 0; lane < batch.count; ++lane) {
-        const bool wasTeleported = batch.secondsOfTeleport[lane] > 0;
         for (uint32_t i = 0; i < lists[lane].count; ++i)
             NoteDrive(batch, lane, lists[lane].rows[i], batch.rows[i].part.GetEffectiveMass()[lane], settings,
                       types[batch.joint[lane]]->quiet);
-        for (uint32_t i = 0; i < lists[lane].count; ++i)
-            if (SoftenLane(batch, batch.rows[i], lane, lists[lane].rows[i], wasTeleported, settings))
-                batch.secondsOfTeleport.Set(lane, records[batch.joint[lane]].secondsOfTeleport);
+        for (uint32_t i = 0; i < lists[lane].count; ++i) SoftenLane(batch, lists[lane], i, lane, settings);
     }
 }
 
-// Finds the joints that are far apart and are pulled, see PullJoints.
-template <LinearLock kLinear, AngularLock kAngular, int N>
-void FindFar(JointBatch<N>& batch, const JointPlace<Wide<N>>& place, const JointErrors<Wide<N>>& errors,
-             const Wide<N>& wasPulled, const JointSolveSettings& settings) {
-    using Real = Wide<N>;
-    const Real farFraction(FarPush(settings)), least = FarPush<Real>(wasPulled, settings), zero(0.0f);
-    // Correction speeds that distances and angles ask for, as fractions of the largest push speed.
-    Real distance(0.0f), angle(0.0f);
-    const Real rate(settings.pushRate / settings.maxPushSpeed);
-    const auto note = [&](Real& push, const auto& error) {
-        for (int k = 0; k < error.size(); ++k) push = Max(push, Abs(error[k]) * rate);
-    };
-    if constexpr (kLinear == LinearLock::Point) note(distance, errors.point);
-    if constexpr (kLinear == LinearLock::Line) note(distance, errors.line);
-    if constexpr (kAngular == AngularLock::All) note(angle, errors.rotation);
-    if constexpr (kAngular == AngularLock::Axis) note(angle, errors.hinge);
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        const JointRows<N>& row = batch.rows[i];
-        const auto moves = MovesAnchors(row), acts = CorrectsError(row);
-        const Real push = Select(acts, Abs(row.error) * row.pushRate / Select(acts, row.mostPush, Real(1.0f)), zero);
-        distance = Max(distance, Select(moves, push, zero));
-        angle = Max(angle, Select(moves, zero, push));
-    }
-    // Angular errors alone count only after a teleport: they do not lengthen lever arms, and in a pile hinges bend
-    // beyond their limits anyway. After a teleport, correcting them by velocities, which are relaxed in rotated
-    // directions, would leave energy.
-    const auto isDistant = distance > farFraction, isMuch = Max(distance, angle) > farFraction;
-    const Real near = SecondsNear(wasPulled, isDistant, settings);
-    batch.pushed =
-        IsPushedFar<Real>(distance / rate, angle / rate, batch.startArmA, batch.startArmB, settings).ToBits() &
-        LanesOf(batch);
-    const auto mayPull =
-        MayPull<Real>(distance / rate, batch.startArmA, batch.startArmB, wasPulled, batch.secondsOfTeleport);
-    const auto isFar = (((distance > least) & mayPull) |
-                        ((angle > least) & ((wasPulled >= Real(kWasFar)) | (batch.secondsOfTeleport > zero)))) &
-                       (near <= Real(LongestNear(settings)));
-    batch.far = isFar.Any();
-    batch.isFar = Select(isFar, Real(kWasFar) + near, zero);
-    batch.isDistant = Select(isDistant, Real(1.0f), zero);
-    if (!batch.far) return;
-    batch.pullLinear = batch.pullAngular = Zero<Real>();
-    SetUpParts<kLinear, kAngular>(batch, place);
-    SetUpCoupling<kLinear, kAngular>(batch);
-    // No warm start: the last impulses were computed with other lever arms.
-    const auto isNew = isFar & (wasPulled < Real(kFollowed));
-    const auto forget = [&](auto& part) {
-        auto total = part.GetTotalLambda();
-        for (int k = 0; k < total.size(); ++k) total[k] = Select(isNew, Real(0.0f), Real(total[k]));
-        part.SetTotalLambda(total);
-    };
-    if constexpr (kAngular != AngularLock::None) forget(AngularPart<kAngular>(batch));
-    if constexpr (kLinear != LinearLock::None) forget(LinearPart<kLinear>(batch));
-    // Limits are pulled. Motors, springs and friction are inactive: with a lever arm as long as the gap they would spin
-    // up the bodies, and a motor whose axis is rotated by the pull would gain energy that is not its work.
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        JointRows<N>& row = batch.rows[i];
-        const Real unlimited(JointRow::kUnlimited);
-        row.waits = Select(isMuch & (row.mostPush >= unlimited), Real(1.0f), Real(0.0f));
-        row.pushRate = Select(isFar & (row.mostPush < unlimited), Real(0.0f), row.pushRate);
-        row.part.SetTotalLambda(Select(isNew, Real(0.0f), row.part.GetTotalLambda()));
-    }
-    if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
-}
-
-// Finds the joints that are strained, see JointStrain.h. Those of a teleport are not: they are pulled.
+// Finds the joints that are strained, see JointStrain.h.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindStrained(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors) {
     using Real = Wide<N>;
@@ -331,7 +263,7 @@ void FindStrained(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors) {
     };
     const auto isStrained = isLarge(batch.massA, batch.startArmA) | isLarge(batch.massB, batch.startArmB) |
                             (angle > Real(kStrain * kStrain));
-    batch.strained = (isStrained & (batch.secondsOfTeleport <= Real(0.0f))).ToBits();
+    batch.strained = isStrained.ToBits();
 }
 
 }  // namespace
@@ -361,9 +293,6 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
     batch.startArmB = place.armB;
     batch.startOffset = place.offset;
     batch.earlierLinear = batch.earlierAngular = Zero<Real>();
-    batch.far = false;
-    batch.follows = Real(0.0f);
-    batch.secondsOfTeleport = SecondsLeft<Real>(impulses[JointRecord::kSecondsOfTeleport], settings);
     const Real scale(settings.impulseScale);
     const Vec3<Real> linearImpulse = VectorAt<JointRecord::kForce>(impulses) * scale;
     const Vec3<Real> angularImpulse = VectorAt<JointRecord::kTorque>(impulses) * scale;
@@ -411,11 +340,12 @@ void PrepareJoints(JointBatch<N>& batch, const JointRecord* records, JointType* 
         }
         SetUpCoupling<linear, angular>(batch);
         FillRows<linear, angular>(batch, records, types, bodies, settings);
-        FindFar<linear, angular>(batch, place, errors, impulses[JointRecord::kWasPulled], settings);
-        findings.far |= batch.far;
-        findings.pushed |= batch.pushed != 0;
+        findings.turning |= batch.turning;
         FindStrained<linear, angular>(batch, errors);
-        Soften<linear, angular>(batch, errors, settings);
+        SetRowBias(batch, bodies.states);
+        batch.radialArmA = place.armA;
+        batch.radialArmB = place.armB;
+        batch.radialOffset = place.offset;
     });
 }
 
@@ -471,17 +401,15 @@ LockImpulses<Wide<N>> StepImpulses(const JointBatch<N>& batch) {
     return sum;
 }
 
-// Writes a wrench times `scale` to a row of the records, with the row's other two floats.
+// Writes a wrench times `scale` to a row of the records.
 template <int N>
-void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale,
-                   const Wide<N>& wasPulled = Wide<N>(0.0f), const Wide<N>& secondsOfTeleport = Wide<N>(0.0f)) {
+void ScatterWrench(const JointBatch<N>& batch, JointRecord* records, int row, const Wrench<N>& wrench, float scale) {
     using Real = Wide<N>;
     const Real factor(scale);
     Real values[8];
     SetVectorAt<JointRecord::kForce>(values, wrench.force * factor);
     SetVectorAt<JointRecord::kTorque>(values, wrench.torque * factor);
-    values[JointRecord::kWasPulled] = wasPulled;
-    values[JointRecord::kSecondsOfTeleport] = secondsOfTeleport;
+    values[6] = values[7] = Real(0.0f);
     ScatterRecordRow<N>(batch.joint, batch.count, records, row, values);
 }
 
@@ -512,8 +440,7 @@ void StoreJoints(const JointBatch<N>& batch, JointRecord* records, JointType* co
         total.torque -=
             ZeroUnless<Real>(acts, Vec3<Real>((b.angular - Cross<Real>(batch.startArmB, b.linear)) * -impulse));
     }
-    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse, Max(batch.isFar, batch.follows),
-                  batch.secondsOfTeleport);
+    ScatterWrench(batch, records, JointRecord::kOwn, own, inverse);
     ScatterWrench(batch, records, JointRecord::kLocks, locks, perSecond);
     ScatterWrench(batch, records, JointRecord::kTotal, total, perSecond);
     if (batch.rowRoom == 0) return;

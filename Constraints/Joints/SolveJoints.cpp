@@ -6,35 +6,14 @@ namespace {
 
 using namespace joints;
 
-// Adds the total impulses of the locks to the velocities, times `sign`.
-template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE void AddLockImpulses(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b,
-                                          float sign) {
-    using Real = Wide<N>;
-    const auto add = [&](const auto& part, const Vec3<Real>& reaction) {
-        auto lambda = part.GetTotalLambda();
-        if (batch.rowCount > 0) AddReaction<decltype(lambda), Real>(lambda, reaction);
-        for (int k = 0; k < lambda.size(); ++k) lambda[k] = lambda[k] * Real(sign);
-        part.AddImpulse(a, b, batch.massA, batch.massB, lambda, Real(0.0f) < Real(1.0f));
-    };
-    if constexpr (kAngular == AngularLock::All) add(batch.rotation, batch.reactionAngular);
-    if constexpr (kAngular == AngularLock::Axis) add(batch.hinge, batch.reactionAngular);
-    if constexpr (kLinear == LinearLock::Point) add(batch.point, batch.reactionLinear);
-    if constexpr (kLinear == LinearLock::Line) add(batch.line, batch.reactionLinear);
+// The first rows of a vector of three, as many as a lock has.
+template <class Real>
+FULCRUM_FORCE_INLINE Vec3<Real> Narrowed(const Vec3<Real>& v, const Vec3<Real>&) {
+    return v;
 }
-
-// The same for the rows' impulses, without the reaction of the locks, and only in lanes whose direction or mass changes
-// within the step, independently of other lanes.
-template <int N>
-FULCRUM_FORCE_INLINE void AddTurningRows(const JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b, float sign) {
-    using Real = Wide<N>;
-    Real impulses[JointRowList::kMaxRows];
-    RowImpulses(batch, impulses);
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        const JointRows<N>& row = batch.rows[i];
-        const Real turns = Max(Max(row.radial, row.turnsWithA), batch.turns) * Real(sign);
-        AddResponse<>(ResponseOf<>(row.part.GetJacobian(), batch.massA, batch.massB), Real(impulses[i] * turns), a, b);
-    }
+template <class Real>
+FULCRUM_FORCE_INLINE Vec2<Real> Narrowed(const Vec3<Real>& v, const Vec2<Real>&) {
+    return {v.x(), v.y()};
 }
 
 // Adds the impulses of the finished substep to the sums of the step.
@@ -56,28 +35,49 @@ FULCRUM_FORCE_INLINE void SumImpulses(JointBatch<N>& batch) {
     for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].earlier += impulses[i];
 }
 
-// Ends a substep: computes the change of the impulses due to the rotation of the parts.
+// Total impulses of the locks, with their reaction to the rows.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-FULCRUM_FORCE_INLINE void Turn(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
-    SumImpulses<kLinear, kAngular>(batch);
-    a.angular += batch.turnedA.angular;
-    b.angular += batch.turnedB.angular;
-    if constexpr (kLinear != LinearLock::Point) {
-        a.linear += batch.turnedA.linear;
-        b.linear += batch.turnedB.linear;
-    }
+FULCRUM_FORCE_INLINE LockImpulses<Wide<N>> TotalImpulses(const JointBatch<N>& batch) {
+    using Real = Wide<N>;
+    LockImpulses<Real> total;
+    if constexpr (kLinear != LinearLock::None)
+        total.linear = Widened(LinearPart<kLinear>(batch).GetTotalLambda(), Real(0.0f));
+    if constexpr (kAngular != AngularLock::None)
+        total.angular = Widened(AngularPart<kAngular>(batch).GetTotalLambda(), Real(0.0f));
+    if (batch.rowCount == 0) return total;
+    if constexpr (kLinear != LinearLock::None) AddReaction(total.linear, batch.reactionLinear);
+    if constexpr (kAngular != AngularLock::None) AddReaction(total.angular, batch.reactionAngular);
+    return total;
 }
 
-// The same, applied at once, for these lanes.
-template <LinearLock kLinear, int N>
-[[gnu::noinline, gnu::cold]] void TurnAtOnce(JointBatch<N>& batch, const WideMask<N>& lanes, Twist<Wide<N>>& a,
-                                             Twist<Wide<N>>& b) {
-    AddAtOnce<N>(lanes, batch.turnedA.angular, a.angular);
-    AddAtOnce<N>(lanes, batch.turnedB.angular, b.angular);
-    if constexpr (kLinear != LinearLock::Point) {
-        AddAtOnce<N>(lanes, batch.turnedA.linear, a.linear);
-        AddAtOnce<N>(lanes, batch.turnedB.linear, b.linear);
+// The impulses on both bodies and their work (WarmStart.h). a, b: velocities of those bodies that are not dynamic, else
+// zero.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+FULCRUM_FORCE_INLINE Vec2<Wide<N>> FindWarmStart(const JointBatch<N>& batch, const Twist<Wide<N>>& a,
+                                                 const Twist<Wide<N>>& b, Twist<Wide<N>>& onA, Twist<Wide<N>>& onB) {
+    using Real = Wide<N>;
+    Vec2<Real> work(Real(0.0f), Real(0.0f));
+    Sym3<Real> one;
+    one.xx = one.yy = one.zz = Real(1.0f);
+    const InverseMass<Real> unit(Real(1.0f), one);
+    const LockImpulses<Real> total = TotalImpulses<kLinear, kAngular>(batch);
+    const auto add = [&](const auto& part, const Vec3<Real>& impulse) FULCRUM_FORCE_INLINE_LAMBDA {
+        const auto lambda = Narrowed(impulse, part.GetTotalLambda());
+        part.AddImpulse(onA, onB, unit, unit, lambda, Real(0.0f) < Real(1.0f));
+        const auto speed = part.RelativeMotion(a, b) + part.GetBias();
+        for (int k = 0; k < lambda.size(); ++k) work[0] += lambda[k] * speed[k];
+    };
+    if constexpr (kAngular != AngularLock::None) add(AngularPart<kAngular>(batch), total.angular);
+    if constexpr (kLinear != LinearLock::None) add(LinearPart<kLinear>(batch), total.linear);
+    Real impulses[JointRowList::kMaxRows];
+    RowImpulses(batch, impulses);
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const auto& part = batch.rows[i].part;
+        const RowJacobian<Real>& j = part.GetJacobian();
+        AddResponse<>(ResponseOf<>(j, unit, unit), impulses[i], onA, onB);
+        work += part.WarmStartWork(impulses[i], RelativeMotion<>(j, a, b));
     }
+    return work;
 }
 
 template <LinearLock kLinear, AngularLock kAngular, int N>
@@ -90,37 +90,18 @@ FULCRUM_FORCE_INLINE void SolveRow(JointBatch<N>& batch, JointRows<N>& row, Twis
     if constexpr (kAngular != AngularLock::None) batch.reactionAngular += row.lockAngular * delta;
 }
 
-// The first rows of a vector of three, as many as a lock has.
-template <class Real>
-FULCRUM_FORCE_INLINE Vec3<Real> Narrowed(const Vec3<Real>& v, const Vec3<Real>&) {
-    return v;
-}
-template <class Real>
-FULCRUM_FORCE_INLINE Vec2<Real> Narrowed(const Vec3<Real>& v, const Vec2<Real>&) {
-    return {v.x(), v.y()};
-}
-
-// Both locks as one block. A relax iteration is hard and without bias; the parts are set up that way then.
-template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
+// Both locks as one block.
+template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     using Real = Wide<N>;
     auto& linearPart = LinearPart<kLinear>(batch);
     auto& angularPart = AngularPart<kAngular>(batch);
-    LockImpulses<Real> error = LockMotion<kLinear, kAngular>(batch, a, b);
-    if constexpr (!kRelax) {
-        error.linear += Widened(linearPart.GetBias(), Real(0.0f));
-        error.angular += Widened(angularPart.GetBias(), Real(0.0f));
-    }
-    const LockImpulses<Real> x = SolveBlock<kLinear, kAngular>(batch, error.linear, error.angular);
+    const LockImpulses<Real> motion = LockMotion<kLinear, kAngular>(batch, a, b);
+    const LockImpulses<Real> x =
+        SolveBlock<kLinear, kAngular>(batch, motion.linear + Widened(linearPart.GetBias(), Real(0.0f)),
+                                      motion.angular + Widened(angularPart.GetBias(), Real(0.0f)));
     const auto apply = [&](auto& part, const Vec3<Real>& wide) FULCRUM_FORCE_INLINE_LAMBDA {
-        auto delta = Narrowed(wide, part.GetTotalLambda());
-        if constexpr (kRelax) {
-            delta = -delta;
-        } else {
-            const RowSoftness<Real>& softness = part.GetSoftness();
-            delta = SoftDelta(delta * softness.massScale, part.GetTotalLambda(), softness.impulseScale);
-        }
-        part.AddLambda(a, b, batch.massA, batch.massB, delta, Real(0.0f) < Real(1.0f));
+        part.AddLambda(a, b, batch.massA, batch.massB, -Narrowed(wide, part.GetTotalLambda()), Real(0.0f) < Real(1.0f));
     };
     apply(angularPart, x.angular);
     apply(linearPart, x.linear);
@@ -129,7 +110,7 @@ FULCRUM_FORCE_INLINE void SolveBoth(JointBatch<N>& batch, Twist<Wide<N>>& a, Twi
 // Locks come before rows: a row's response includes the reaction of the locks, which thus stay satisfied. A row before
 // them would react to motion that the locks have yet to stop: of a rod that is held at one end its impulse would be up
 // to four times too large, and iterations of limits between contacts would diverge.
-template <bool kRelax, LinearLock kLinear, AngularLock kAngular, int N>
+template <LinearLock kLinear, AngularLock kAngular, int N>
 FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twist<Wide<N>>& b) {
     if constexpr (!kCoupled<kLinear, kAngular>) {
         if constexpr (kAngular != AngularLock::None)
@@ -137,7 +118,7 @@ FULCRUM_FORCE_INLINE void SolveAll(JointBatch<N>& batch, Twist<Wide<N>>& a, Twis
         if constexpr (kLinear != LinearLock::None)
             LinearPart<kLinear>(batch).SolveVelocity(a, b, batch.massA, batch.massB);
     } else {
-        SolveBoth<kRelax, kLinear, kAngular>(batch, a, b);
+        SolveBoth<kLinear, kAngular>(batch, a, b);
     }
     for (uint32_t i = 0; i < batch.rowCount; ++i) SolveRow<kLinear, kAngular>(batch, batch.rows[i], a, b);
 }
@@ -168,71 +149,26 @@ FULCRUM_FORCE_INLINE JointPlace<Wide<N>> Displace(const JointBatch<N>& batch, co
     return place;
 }
 
-// Updates the parts and the rows' errors to the displaced poses; the change due to the rotation of the locks' impulses
-// is left for the next substep.
+// Updates the parts and the rows' errors to the displaced poses.
 template <LinearLock kLinear, AngularLock kAngular, int N>
-[[gnu::noinline]] JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies,
-                                              const Twist<Wide<N>>& velocityA, const Twist<Wide<N>>& velocityB,
-                                              const JointSolveSettings& settings) {
+[[gnu::noinline]] JointErrors<Wide<N>> Follow(JointBatch<N>& batch, const SolverBodies& bodies, const Motion<N>& poseA,
+                                              const Motion<N>& poseB, const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    Motion<N> motionA, motionB;
-    motionA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
-    motionB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states);
-    Twist<Real> a = motionA.Get(), b = motionB.Get();
-    AddKinematicMotion<N>(a, velocityA, batch.kinematicA, settings.elapsed);
-    AddKinematicMotion<N>(b, velocityB, batch.kinematicB, settings.elapsed);
-    constexpr bool kLocks = kLinear != LinearLock::None || kAngular != AngularLock::None;
-    constexpr bool kTurns = kLinear != LinearLock::None || kAngular == AngularLock::Axis;
-    Twist<Real> turnedA, turnedB;
-    if (!settings.firstPass) {
-        turnedA = batch.turnedA;
-        turnedB = batch.turnedB;
-    }
-    const bool turnRows = batch.rowCount > 0 && (batch.radial || batch.rowsTurnWithA || batch.turning);
-    const bool turns = kTurns || turnRows || (kLocks && (batch.rowCount > 0 || batch.turning));
-    if (turns) {
-        AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, -1.0f);
-        if (turnRows) AddTurningRows(batch, turnedA, turnedB, -1.0f);
+    Twist<Real> a = poseA.Get(), b = poseB.Get();
+    if ((batch.kinematicA | batch.kinematicB) != 0) {
+        const Velocities<N> v(batch, bodies.states);
+        AddKinematicMotion<N>(a, v.a, batch.kinematicA, settings.elapsed);
+        AddKinematicMotion<N>(b, v.b, batch.kinematicB, settings.elapsed);
     }
     if (batch.turning) GatherMasses(batch, bodies.masses);
     const JointPlace<Real> place = Displace<kLinear, kAngular>(batch, a, b);
     const JointErrors<Real> errors = SetUpParts<kLinear, kAngular>(batch, place);
     SetUpCoupling<kLinear, kAngular>(batch);
     if (batch.rowCount > 0) MoveRows(batch, a, b);
-    if (batch.radial)
-        for (uint32_t i = 0; i < batch.rowCount; ++i) RotateRadialRow(batch, batch.rows[i], place);
+    if (batch.radial) RotateRadialRows(batch, place);
     if (batch.rowCount > 0) SetUpRows<kLinear, kAngular>(batch);
-    if (turns) {
-        AddLockImpulses<kLinear, kAngular>(batch, turnedA, turnedB, 1.0f);
-        if (turnRows) AddTurningRows(batch, turnedA, turnedB, 1.0f);
-    }
-    batch.turnedA.angular = turnedA.angular;
-    batch.turnedB.angular = turnedB.angular;
-    if constexpr (kLinear != LinearLock::Point) {
-        batch.turnedA.linear = turnedA.linear;
-        batch.turnedB.linear = turnedB.linear;
-    }
+    SetRowBias(batch, bodies.states);
     return errors;
-}
-
-// Corrects the errors of rows that are not pushed (CorrectsPose), as fast as they would be.
-template <int N>
-[[gnu::noinline]] void CorrectPivots(const JointBatch<N>& batch, BodyState* states,
-                                     const JointSolveSettings& settings) {
-    using Real = Wide<N>;
-    constexpr float kFastest = 2;  // rad/s: what one joint of a mechanism is turned by, the others must follow
-    const Real zero(0.0f), h(settings.substepDt);
-    Twist<Real> a, b;
-    for (uint32_t i = 0; i < batch.rowCount; ++i) {
-        const JointRows<N>& row = batch.rows[i];
-        const auto corrects = CorrectsPose(row) & (row.error <= row.openAbove);
-        const Real most = Min(row.mostPush, Real(kFastest)), error = Clamp(row.pushRate * row.error, -most, most) * h;
-        // What the rows before it have moved already.
-        const Real moved = RelativeMotion<>(row.part.GetJacobian(), a, b);
-        const Real left = Select(row.error < zero, Min(error + moved, zero), error + moved);
-        row.part.SolvePosition(a, b, Select(corrects, left, zero), Real(1.0f));
-    }
-    MoveBodies<N>(batch, states, a, b);
 }
 
 // Calls change(linear lock, angular lock, velocities of A, of B) for the batch and scatters the velocities back.
@@ -244,78 +180,90 @@ FULCRUM_FORCE_INLINE void ChangeLocked(Batch& batch, BodyState* states, F&& chan
     });
 }
 
+// AddWarmStart for these locks.
+template <LinearLock kLinear, AngularLock kAngular, int N>
+FULCRUM_FORCE_INLINE void AddTo(JointBatch<N>& batch, BodyState* states, WarmStart* starts,
+                                const JointSolveSettings& settings) {
+    using Real = Wide<N>;
+    if (settings.continues) SumImpulses<kLinear, kAngular>(batch);
+    const Velocities<N> v(batch, states);
+    AimAtEnd<kLinear, kAngular>(batch, v.a, v.b, settings);
+    Twist<Real> ofA, ofB, onA, onB;
+    AddKinematicMotion<N>(ofA, v.a, batch.kinematicA, 1);
+    AddKinematicMotion<N>(ofB, v.b, batch.kinematicB, 1);
+    const Vec2<Real> work = FindWarmStart<kLinear, kAngular>(batch, ofA, ofB, onA, onB);
+    if (batch.overridesMass) [[unlikely]] {
+        // As if with the masses of the bodies: an override scales what an impulse changes.
+        onA.linear = onA.linear * batch.massScaleA;
+        onA.angular = onA.angular * batch.inertiaScaleA;
+        onB.linear = onB.linear * batch.massScaleB;
+        onB.angular = onB.angular * batch.inertiaScaleB;
+    }
+    AddWarmStart<N>(starts, batch.bodyA, batch.bodyB, batch.count, batch.fixedA, batch.fixedB, onA, onB, work);
+}
+
 }  // namespace
 
 template <int N>
-void WarmStartJoints(const JointBatch<N>& batch, BodyState* states) {
-    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        for (uint32_t i = 0; i < batch.rowCount; ++i) batch.rows[i].part.WarmStart(a, b);
-        if constexpr (angular != AngularLock::None)
-            AngularPart<angular>(batch).WarmStart(a, b, batch.massA, batch.massB);
-        if constexpr (linear != LinearLock::None) LinearPart<linear>(batch).WarmStart(a, b, batch.massA, batch.massB);
+void AddWarmStart(JointBatch<N>& batch, BodyState* states, WarmStart* starts, const JointSolveSettings& settings) {
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) FULCRUM_FORCE_INLINE_LAMBDA {
+        AddTo<linear, angular>(batch, states, starts, settings);
     });
 }
 
 template <int N>
-void RotateJointImpulses(JointBatch<N>& batch, BodyState* states) {
-    ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        Turn<linear, angular>(batch, a, b);
+void ScaleImpulses(JointBatch<N>& batch, const WarmStart* starts) {
+    using Real = Wide<N>;
+    const Real scale = GatherScale<N>(starts, batch.bodyA, batch.bodyB, batch.fixedA);
+    const auto scaled = [&](auto& part) { part.SetTotalLambda(part.GetTotalLambda() * scale); };
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) FULCRUM_FORCE_INLINE_LAMBDA {
+        if constexpr (linear != LinearLock::None) scaled(LinearPart<linear>(batch));
+        if constexpr (angular != AngularLock::None) scaled(AngularPart<angular>(batch));
     });
+    if (batch.rowCount == 0) return;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) scaled(batch.rows[i].part);
+    batch.reactionLinear = batch.reactionLinear * scale;
+    batch.reactionAngular = batch.reactionAngular * scale;
 }
 
 template <int N>
 void SolveJointVelocities(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
     ChangeLocked<N>(batch, states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        if (settings.continues) Turn<linear, angular>(batch, a, b);
-        SolveAll<false, linear, angular>(batch, a, b);
+        AimAtEnd<linear, angular>(batch, a, b, settings);
+        SolveAll<linear, angular>(batch, a, b);
     });
 }
 
 template <int N>
-void RelaxJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    ChangeLocked<N>(batch, bodies.states, [&](auto linear, auto angular, auto& a, auto& b) FULCRUM_FORCE_INLINE_LAMBDA {
-        const auto isPushed = IsPushedFast<linear, angular>(batch);
-        const JointErrors<Wide<N>> errors = Follow<linear, angular>(batch, bodies, a, b, settings);
-        if (isPushed.Any()) [[unlikely]]
-            TurnAtOnce<linear>(batch, isPushed, a, b);
-        if (batch.pivots && settings.firstPass && settings.pushes) CorrectPivots(batch, bodies.states, settings);
-        SetRowRelax(batch);
-        SolveAll<true, linear, angular>(batch, a, b);
-        Soften<linear, angular>(batch, errors, settings);
+void AimJoints(JointBatch<N>& batch, BodyState* states, const JointSolveSettings& settings) {
+    const Velocities<N> v(batch, states);
+    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) FULCRUM_FORCE_INLINE_LAMBDA {
+        AimAtEnd<linear, angular>(batch, v.a, v.b, settings);
     });
 }
 
-template <int N>
-void UpdateJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
-    WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        const Velocities<N> v(batch, bodies.states);
-        Soften<linear, angular>(batch, Follow<linear, angular>(batch, bodies, v.a, v.b, settings), settings);
-    });
-}
+// The least part of the error of a limit that a position iteration corrects. More than of a lock: only what passes a
+// limit is wrong, and bodies that slide along it pass it in every step.
+constexpr float kLimitPart = 0.5f;
 
 template <int N>
-void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const JointSolveSettings& settings) {
+void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, WarmStart* starts,
+                   const JointSolveSettings& settings) {
     using Real = Wide<N>;
-    const Real zero(0.0f), one(1.0f), part(settings.baumgarte), most(settings.maxPushSpeed * settings.substepDt);
+    const Real zero(0.0f), one(1.0f), part = PartCorrected<N>(batch.high, settings);
     WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
-        const Velocities<N> v(batch, bodies.states);
-        const JointErrors<Real> errors = Follow<linear, angular>(batch, bodies, v.a, v.b, settings);
+        Motion<N> poseA, poseB;
+        poseA.template Gather<BodyRow::Displacement>(batch.bodyA, bodies.states);
+        poseB.template Gather<BodyRow::Displacement>(batch.bodyB, bodies.states);
+        const JointErrors<Real> errors = Follow<linear, angular>(batch, bodies, poseA, poseB, settings);
         Twist<Real> a, b;
-        const auto isNear = batch.isFar <= Real(0.5f);
-        const auto correction = [&](const Real& error) {
-            return Select(isNear, Clamp(Real(error * part), -most, most), zero);
-        };
-        for (uint32_t i = 0; i < batch.rowCount; ++i) {
-            const JointRows<N>& row = batch.rows[i];
-            // Corrects locks and limits, for rows that couple two motions scaled by the ratio; not springs, which are
-            // forces.
-            const auto corrects =
-                (row.mostPush > zero) & (row.mostPush < Real(JointRow::kUnlimited)) & (row.error <= row.openAbove);
-            row.part.SolvePosition(a, b, Select(corrects, correction(row.error), zero), one);
-        }
         const auto correct = [&](auto& lock, const auto& error, Vec3<Real>& wide) {
             auto wanted = error;
-            for (int k = 0; k < wanted.size(); ++k) wanted[k] = correction(error[k]);
+            for (int k = 0; k < wanted.size(); ++k) wanted[k] = Corrected<Real>(error[k], part, settings);
+            if (settings.leavesLocks) {
+                lock.SetBias(wanted, {});
+                for (int k = 0; k < wanted.size(); ++k) wanted[k] = zero;
+            }
             if constexpr (kCoupled<linear, angular>) wide = Widened(wanted, zero);
             else lock.SolvePosition(a, b, batch.massA, batch.massB, wanted, one);
         };
@@ -330,17 +278,29 @@ void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, const Joint
             x.angular = -x.angular;
             AddLockMotion<linear, angular>(batch, a, b, x);
         }
-        MoveBodies<N>(batch, bodies.states, a, b);
+        // Rows after the locks, as in velocity iterations. Limits and rows that are locks are corrected, less what has
+        // moved already; not springs, which are forces.
+        for (uint32_t i = 0; i < batch.rowCount; ++i) {
+            const JointRows<N>& row = batch.rows[i];
+            const auto corrects =
+                (row.mostPush > zero) & (row.mostPush < Real(JointRow::kUnlimited)) & (row.error <= row.openAbove);
+            const auto isLimit = row.openAbove <= zero;
+            const Real left = Corrected<Real>(row.error, Select(isLimit, Max(part, Real(kLimitPart)), part), settings) +
+                              RelativeMotion<>(row.part.GetJacobian(), a, b);
+            const Real toCorrect = Select(isLimit, Real(Min(left, zero)), left);
+            row.part.SolvePosition(a, b, Select(corrects, toCorrect, zero), one);
+        }
+        MoveBodies<N>(batch, bodies.states, poseA, poseB, a, b);
+        if (starts) AddTo<linear, angular>(batch, bodies.states, starts, settings);
     });
 }
 
-#define FULCRUM_INSTANTIATE(lanes)                                                                  \
-    template void WarmStartJoints(const JointBatch<lanes>&, BodyState*);                            \
-    template void RotateJointImpulses(JointBatch<lanes>&, BodyState*);                              \
-    template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);  \
-    template void RelaxJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);  \
-    template void UpdateJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&); \
-    template void CorrectJoints(JointBatch<lanes>&, const SolverBodies&, const JointSolveSettings&);
+#define FULCRUM_INSTANTIATE(lanes)                                                                     \
+    template void AddWarmStart(JointBatch<lanes>&, BodyState*, WarmStart*, const JointSolveSettings&); \
+    template void ScaleImpulses(JointBatch<lanes>&, const WarmStart*);                                 \
+    template void AimJoints(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);                \
+    template void SolveJointVelocities(JointBatch<lanes>&, BodyState*, const JointSolveSettings&);     \
+    template void CorrectJoints(JointBatch<lanes>&, const SolverBodies&, WarmStart*, const JointSolveSettings&);
 FULCRUM_FOR_EACH_WIDTH(FULCRUM_INSTANTIATE)
 #undef FULCRUM_INSTANTIATE
 

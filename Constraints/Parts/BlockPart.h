@@ -79,7 +79,6 @@ public:
         softness_ = softness;
     }
     const Rows& GetBias() const { return bias_; }
-    const RowSoftness<Real>& GetSoftness() const { return softness_; }
 
     Mask IsActive() const { return Types::Trace(effectiveMass_) > Real(0.0f); }
 
@@ -118,9 +117,6 @@ public:
     // N s or N m s.
     const Rows& GetTotalLambda() const { return totalLambda_; }
     void SetTotalLambda(const Rows& totalLambda) { totalLambda_ = totalLambda; }
-    void AddTotalLambda(int row, int lane, double change) {
-        totalLambda_[row].Set(lane, static_cast<float>(static_cast<double>(totalLambda_[row][lane]) + change));
-    }
     // K^-1 without the softness; zero if inactive. kg or kg m2.
     const Symmetric& GetEffectiveMass() const { return effectiveMass_; }
 

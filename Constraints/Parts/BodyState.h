@@ -14,9 +14,7 @@ struct alignas(64) BodyState {
     // First row: the velocity.
     float linearVelocity[3] = {0, 0, 0};   // m/s, of the center of mass
     float angularVelocity[3] = {0, 0, 0};  // rad/s, world axes
-    // For pseudo-velocities: 1 if a contact with a static or kinematic body acts (PullContacts), or joints connect it
-    // to a static one or one with locked translations (MarkNearFixed).
-    float nearFixed = 0;
+    float spare = 0;
     float marks = 0;  // flags of the stages, not used by constraints
     // Second row: change of pose since the start of the step.
     float deltaPosition[3] = {0, 0, 0};  // m
@@ -30,12 +28,11 @@ struct alignas(64) BodyState {
     const float* VelocityRow() const { return linearVelocity; }
     const float* PoseRow() const { return deltaPosition; }
     // Indices in both rows, in the first, and in the second.
-    enum Places { kLinear = 0, kAngular = 3, kNearFixed = 6, kMarks = 7, kHalfTurn = 6 };
+    enum Places { kLinear = 0, kAngular = 3, kMarks = 7, kHalfTurn = 6 };
 };
 static_assert(sizeof(BodyState) == 64);
 FULCRUM_CHECK_PLACE(BodyState, linearVelocity, 0, BodyState::kLinear);
 FULCRUM_CHECK_PLACE(BodyState, angularVelocity, 0, BodyState::kAngular);
-FULCRUM_CHECK_PLACE(BodyState, nearFixed, 0, BodyState::kNearFixed);
 FULCRUM_CHECK_PLACE(BodyState, marks, 0, BodyState::kMarks);
 FULCRUM_CHECK_PLACE(BodyState, deltaPosition, 1, BodyState::kLinear);
 FULCRUM_CHECK_PLACE(BodyState, deltaRotation, 1, BodyState::kAngular);

@@ -10,6 +10,7 @@
 
 #include <Fulcrum/Constraints/Parts/RowJacobian.h>
 #include <Fulcrum/Constraints/Parts/RowSoftness.h>
+#include <Fulcrum/Constraints/Parts/SymmetricInverse.h>
 
 namespace fulcrum {
 
@@ -50,6 +51,25 @@ public:
         biasImpulse_ = effectiveMass_ * scaledBias;
         impulseScale_ = softness.impulseScale;
     }
+
+    // In these lanes, whose rows are hard, only the bias.
+    FULCRUM_FORCE_INLINE void SetHardBias(const Real& bias, const Mask& mask) {
+        biasImpulse_ = Select(mask, effectiveMass_ * bias, biasImpulse_);
+    }
+    // lambda (b + motion) and gamma lambda^2, in W or J per second: see WarmStart.h. motion: of bodies that are not
+    // dynamic, along J.
+    FULCRUM_FORCE_INLINE Vec2<Real> WarmStartWork(const Real& lambda, const Real& motion) const {
+        const Mask acts = softMass_ > Real(0.0f);
+        const Real perMass = lambda / Select(acts, softMass_, Real(1.0f));
+        return Vec2<Real>(Select(acts, perMass * biasImpulse_ + lambda * motion, Real(0.0f)),
+                          Select(acts, perMass * lambda * impulseScale_, Real(0.0f)));
+    }
+
+    // What iterations converge to: impulseScale lambda = -(softMass J v + biasImpulse), within the limits.
+    struct Target {
+        const Real &softMass, &biasImpulse, &impulseScale;
+    };
+    Target TargetOf() const { return {softMass_, biasImpulse_, impulseScale_}; }
 
     void Deactivate(const Mask& mask) {
         for (Real* x : {&effectiveMass_, &softMass_, &biasImpulse_, &totalLambda_}) *x = Select(mask, Real(0.0f), *x);

@@ -1,25 +1,36 @@
 // A user's spring settings of a constraint, and the constants that a row derives from them. Validated once when a joint
 // is created; SpringSoftness.h turns the constants into the softness of a row. Plain data, no threads.
 //
-// A soft row that acts alone on a mass with error x maps its velocity, once per substep of length h, as
-//     v' = (v - K x / h) / D,    x' = x + h v'
-// and D and K decide which oscillator x'' + 2 zeta w x' + w^2 x = 0 that is. With a = zeta w h and W = (w h)^2:
-//     Implicit:  D = 1 + 2 a + W,  K = W
-//                damping added at every step: zeta grows by about w h / 2
-//     Exact:     D = e^(2a),       K = 1 + D - 2 sqrt(D) cos(sqrt(W - a^2)), or cosh(sqrt(a^2 - W)) where a^2 > W
-//                the eigenvalues of the oscillator itself, so x is that of the continuum at every step
-// What each costs:
-//  - A constant load F rests at x = F h^2 / (m K): implicit meets F / k, exact is too stiff by about the factor 1 + a.
-//    Implicit is off by w h / (2 zeta) of the damping ratio instead; the two errors are equal at zeta = 1 / sqrt(2).
-//  - With E = sum(m v^2 + m K x^2 / h^2) / 2 over all rows that share bodies, a converged step changes E by at most
-//    -sum m v'^2 (D - 1 - K / 2). Where D - 1 >= K / 2 no system of rows can gain energy, whatever masses meet.
-//    Implicit always satisfies that, exact does not once w h > 4 zeta or so: several such springs on one body can blow
-//    up.
-// Automatic, the default, therefore takes for frequency and damping ratio the exact form where it is the better one
-// (zeta < 1 / sqrt(2)) and a period has six steps or more (w h <= 1, where it is stable with a single iteration too),
-// with D raised to the bound D - 1 = K / 2 where it is below (zeta then acts as w h / 4, the frequency stays exact);
-// elsewhere implicit. Stiffness and damping state a force law, not a motion: there Automatic is implicit, whose force
-// at rest is k x. Source of the implicit form: E. Catto, "Soft Constraints", GDC 2011.
+// A spring's row that acts alone on a mass with error x maps its velocity, once per substep of length h, as
+//     v' = (v - L v0 - K x / h) / D,    x' = x + h v'
+// v0 being the velocity at the start of the substep, v that with the changes by other forces. The force is
+//     -((D - 1) v' + L v0 + K x / h) m / h
+// Eigenvalues p, q of the map without other forces belong to the oscillator x'' + 2 zeta w x' + w^2 x = 0 if, with
+// a = zeta w h, W = (w h)^2 and t = sqrt(W - a^2) (cosh of sqrt(a^2 - W) for its cosine where zeta > 1),
+//     p q = (1 - L) / D = e^(-2a),    p + q = (1 - L + D - K) / D = 2 e^-a cos(t)
+// D is free: K / D = 1 + e^(-2a) - 2 e^-a cos(t) and L = 1 - D e^(-2a) follow from it. The forms:
+//     Implicit:   D = 1 + 2 a + W, K = W, L = 0: not that oscillator, zeta grows by about w h / 2
+//     Exact:      D = e^a, where the map is symmetric in time: K = 2 cosh(a) - 2 cos(t), L = 1 - e^-a. Nothing damps an
+//                 undamped spring, whose force does not depend on iterations (D = 1). A constant load F rests at
+//                 F h^2 / (m K), up to W / 12 farther than F / k. With zeta > 1 / sqrt(2) K would exceed W: there it is
+//                 W, as it is of the force, and D follows: the load rests at F / k
+// Several rows that share bodies: with the errors at the middle of the last substep, x - h v / 2, the sum
+//     E = sum m v^2 / 2 - sum (K / 4 - (D - 1 - L) / 2) m v^2 / 2 + sum m K (x - h v / 2)^2 / 2 h^2
+// over bodies and rows changes in a converged substep by -sum (D - 1 + L) m (v + v0)^2 / 4, m being the rows' masses:
+// it never rises. It bounds the motion as long as the second sum takes less than the first, kinetic energy. Implicit
+// rows take nothing, so that no system of them gains energy. Of an undamped spring that is exact the share is sin^2(w h
+// / 2), of n springs along one way of a body up to n times as much.
+//
+// Automatic, the default, is exact where that share is at most a quarter: alone at six steps a period or more, as one
+// of four springs at twelve or more. Where it is more than half, as at less than four steps a period, it is implicit,
+// and damps more than its settings say; between the two it changes from one to the other. With damping of 1 / sqrt(2)
+// and more nothing is taken; the number of springs counts only where they would turn velocities around (sum of L above
+// 2). Stiffness and damping state a force law: there K = W, so that the force at rest is k x, and the undamped
+// frequency is too high by a part of W / 24. Springs that are much stiffer than the substep and contradict each other
+// gain what iterations leave unsolved of them, as implicit ones do.
+//
+// Sources: of the implicit form E. Catto, "Soft Constraints", GDC 2011; of the exact one without damping, the leapfrog
+// method with another stiffness, R. E. Mickens, "Nonstandard Finite Difference Models of Differential Equations", 1994.
 #pragma once
 
 #include <Fulcrum/Math/Result.h>
@@ -35,8 +46,9 @@ enum class SpringMode : uint8_t {
 };
 
 enum class SpringForm : uint8_t {
-    Automatic,  // see above
-    Exact,      // the continuous oscillator wherever it has more than two steps a period (else implicit)
+    Automatic,  // the continuous oscillator where it has six steps a period or more, else implicit; see above
+    Exact,      // the continuous oscillator wherever it has more than two steps a period (else implicit); several such
+                // springs on a body may gain energy
     Implicit,   // unconditionally stable, exact at rest, over-damped by about w h / 2
 };
 
@@ -65,7 +77,7 @@ struct SpringConstants {
 };
 
 // From a frequency (Hz) and damping ratio, and from a stiffness (N/m, N m/rad) and damping (N s/m, N m s/rad). All >=
-// 0. A force law is implicit by default.
+// 0.
 template <class Real>
 inline SpringConstants<Real> FrequencyConstants(Real frequency, Real dampingRatio,
                                                 SpringForm form = SpringForm::Automatic) {
@@ -82,7 +94,7 @@ inline SpringConstants<Real> StiffnessConstants(Real stiffness, Real damping, Sp
     SpringConstants<Real> constants;
     constants.stiffness = stiffness;
     constants.damping = damping;
-    constants.form = Real(static_cast<float>(form == SpringForm::Automatic ? SpringForm::Implicit : form));
+    constants.form = Real(static_cast<float>(form));
     return constants;
 }
 // Settings must be valid.

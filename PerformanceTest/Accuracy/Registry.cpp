@@ -10,9 +10,9 @@ namespace fulcrum::accuracy {
 const std::vector<LabScene>& AllLabScenes() {
     static const std::vector<LabScene> scenes = [] {
         std::vector<LabScene> all;
-        for (const auto family :
-             {FreeMotionScenes, PendulumScenes, SlidingScenes, BouncingScenes, RestingScenes, DriveScenes, LoadScenes,
-              ChainScenes, FastScenes, PlaceScenes, OverlapScenes, SurfaceScenes, DisputeScenes, InputScenes})
+        for (const auto family : {FreeMotionScenes, PendulumScenes, SlidingScenes, BouncingScenes, RestingScenes,
+                                  DriveScenes, LoadScenes, ChainScenes, LinkageScenes, HangingScenes, FastScenes,
+                                  PlaceScenes, OverlapScenes, SurfaceScenes, DisputeScenes, InputScenes})
             for (const LabScene& scene : family()) all.push_back(scene);
         std::stable_sort(all.begin(), all.end(),
                          [](const LabScene& a, const LabScene& b) { return a.isExtreme < b.isExtreme; });

@@ -120,8 +120,8 @@ void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, con
         // Opposite axes: any perpendicular axis, so the normal.
         error = sine > 1e-6f || x.x() > 0.0f ? Vector3(0, -x.z() * scale, x.y() * scale) : Vector3(0, angle, 0);
     }
-    // Large errors are pulled, by rotations about the centers of mass that do not move B along the path: with the
-    // frame's share of it they would be about other axes, and never end.
+    // Large errors are corrected by rotations that do not move B along the path: with the frame's share of it they
+    // would be about other axes, and never end.
     constexpr float kLarge = 0.5f;  // rad
     const bool movesFrame = LengthSquared(error) < kLarge * kLarge;
     const Vector3 axes[3] = {at.tangent, at.normal, at.binormal};

@@ -289,6 +289,7 @@ void RestoreStep(SnapshotReader& s, WorldState& world, StepState& step) {
 void DropBroken(WorldState& world, StepState& step) {
     StepState fresh;
     fresh.findings.resize(step.findings.size());
+    fresh.ofWorkers.resize(step.ofWorkers.size());
     fresh.report = step.report;
     ConstraintColoring coloring;
     step = std::move(fresh);

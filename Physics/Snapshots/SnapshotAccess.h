@@ -218,7 +218,7 @@ void SnapshotAccess::VisitFree(Stream& s, Pairs& store) {
 
 template <class Stream, class Joints>
 bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
-    auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, first, free, count] = store;
+    auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, moved, first, free, count] = store;
     s.Begin(SnapshotSection::Joints);
     for (uint32_t i = 0; i < joints.size(); ++i) {
         s.Reserve(kMostOfJoint);
@@ -236,6 +236,7 @@ bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
     s.Begin(SnapshotSection::JointLists);
     s.Reserve(64);
     s(targetCount, count);
+    VisitList(s, moved, sizeof(MovedBody), [&](auto& of) { s(of.body, of.before.position, of.before.rotation); });
     s.List(first);
     s.List(free);
     s.EndBlock();
@@ -272,7 +273,7 @@ void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts
     auto& [settings, jobs, listener, observer, callObserver, bodies, colliders, itsPairs, joints, coloring, sleeping,
            sensors, removed, number, lock, outsideFatBounds, pendingTrees, seenPoses, heededShapeVersion, lifts] =
         world;
-    auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver, saved,
+    auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, ofWorkers, pairs, crowd, began, seams, solver, saved,
            sleepCandidates, sweeps, sensing, events, errors] = step;
     auto& [deepOverlaps, dispersing, crowded, settling, settled] = crowd;
     s.Begin(SnapshotSection::Step);

@@ -61,8 +61,8 @@ void VisitControl(Stream& s, Control& control) {
 template <class Stream, class Settings>
 void VisitSystemSettings(Stream& s, Settings& settings) {
     auto& [gravity, solver, accuracy, sleep, events, measuresErrors, narrowPhase, speculativeDistance, penetrationSlop,
-           contactFrequency, contactDampingRatio, contactPushSpeed, depenetrationSpeed, jointFrequency,
-           jointDampingRatio, exactJointLoad, jointPushSpeed, restitutionSpeed, boundsMargin, layerCollides] = settings;
+           contactFrequency, contactDampingRatio, contactPushSpeed, depenetrationSpeed, exactJointLoad, jointPushSpeed,
+           restitutionSpeed, boundsMargin, layerCollides] = settings;
     auto& [substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop] = solver;
     auto& [penetration, jointError, drift, mostSubsteps, largeIslands] = accuracy;
     auto& [sleepEnabled, sleepSeconds, sleepSpeed] = sleep;
@@ -70,7 +70,7 @@ void VisitSystemSettings(Stream& s, Settings& settings) {
     s(gravity, substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop);
     s(penetration, jointError, drift, mostSubsteps, largeIslands, sleepEnabled, sleepSeconds, sleepSpeed, narrowPhase);
     s(speculativeDistance, penetrationSlop, contactFrequency, contactDampingRatio, contactPushSpeed);
-    s(depenetrationSpeed, jointFrequency, jointDampingRatio, exactJointLoad, jointPushSpeed, restitutionSpeed);
+    s(depenetrationSpeed, exactJointLoad, jointPushSpeed, restitutionSpeed);
     s(boundsMargin, layerCollides, reportsContacts, reportsStays, reportsBodies, measuresErrors);
 }
 
@@ -204,11 +204,11 @@ FULCRUM_INLINE_IN_LOOP void VisitBody(Stream& s, Bodies& bodies, uint32_t i) {
         return;
     }
     // Displacements are zero between steps.
-    auto& [linear, angular, nearFixed, marks, deltaPosition, deltaRotation, halfTurn] = state;
+    auto& [linear, angular, stateSpare, marks, deltaPosition, deltaRotation, halfTurn] = state;
     auto& [inverseInertia, inverseMass, flags] = mass;
     auto& [rotation, acceleration, boundsChangedIn, position, innerRadius, spare] = pose;
-    s(linear, angular, nearFixed, marks, inverseInertia, inverseMass, flags, rotation, acceleration, boundsChangedIn,
-      position, innerRadius, dynamics, remainder.value, remainder.isGiven);
+    s(linear, angular, marks, inverseInertia, inverseMass, flags, rotation, acceleration, boundsChangedIn, position,
+      innerRadius, dynamics, remainder.value, remainder.isGiven);
     if (dynamics.hasForce) s(cold.force, cold.torque);
     else if constexpr (!Stream::kWrites) cold.force = cold.torque = Vector3::Zero();
     auto& [lately, before] = bodies.slowMotions[i];
@@ -314,20 +314,19 @@ inline constexpr size_t kMostOfJoint = 1024 + 2 * sizeof(float) * JointRowList::
 
 template <class Stream, class Record>
 void VisitJointRecord(Stream& s, Record& record) {
-    auto& [anchorA, anchorB, lineAxis, freeAxis, frameA, frameB, ownImpulse, ownAngularImpulse, wasPulled,
-           secondsOfTeleport, lockForce, lockTorque, lockSpare, totalForce, totalTorque, totalSpare] = record;
+    auto& [anchorA, anchorB, lineAxis, freeAxis, frameA, frameB, ownImpulse, ownAngularImpulse, ownSpare, lockForce,
+           lockTorque, lockSpare, totalForce, totalTorque, totalSpare] = record;
     if constexpr (!Stream::kWrites) record = {};
-    s(anchorA, anchorB, lineAxis, freeAxis, frameA, frameB, ownImpulse, ownAngularImpulse, wasPulled,
-      secondsOfTeleport);
+    s(anchorA, anchorB, lineAxis, freeAxis, frameA, frameB, ownImpulse, ownAngularImpulse);
     s(lockForce, lockTorque, totalForce, totalTorque);
 }
 
 // Except the type. Returns false if there is no joint.
 template <class Stream, class Joint>
 bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
-    auto& [body, next, type, locks, maxRows, color, generation, exists, enabled, collideConnected, overridesMass, fixed,
-           isStrained, priority, breakForce, breakTorque, effort, errorTarget, massOverride, userData,
-           teleportedBefore] = joint;
+    auto& [body, next, type, locks, maxRows, neighbors, color, generation, exists, enabled, collideConnected,
+           overridesMass, fixed, isStrained, priority, breakForce, breakTorque, effort, errorTarget, massOverride,
+           userData] = joint;
     s(generation, exists);
     if (!exists) return false;
     auto& [linear, angular, line, axis] = locks;
@@ -338,7 +337,7 @@ bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     VisitEffort(s, effort);
     if (overridesMass) VisitMassOverride(s, massOverride);
     else if constexpr (!Stream::kWrites) massOverride = {};
-    s(teleportedBefore, isStrained);
+    s(isStrained);
     return true;
 }
 

@@ -8,7 +8,6 @@
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/FindIslands.h>
 #include <Fulcrum/Physics/Stages/JointBatches.h>
-#include <Fulcrum/Physics/Stages/PlaceTrees.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -33,6 +32,25 @@ void ResizeTo(Array<T>& list, size_t count) {
     list.resize(count);
 }
 
+// Numbers the islands of groups with joints, and sorts their bodies: sums over an island depend on the order of these,
+// which is another one in `awake` after a snapshot was restored.
+void NumberIslands(const BodyStore& bodies, const Islands& islands, SolverLayout& layout, ScratchArena& scratch) {
+    ResizeTo(layout.islandOf, layout.bodies.size());
+    std::span<uint32_t> numbers = scratch.Allocate<uint32_t>(islands.rootOf.size());
+    std::fill(numbers.begin(), numbers.end(), Islands::kNone);
+    for (const SolverGroup& group : layout.groups) {
+        if (!group.hasJoints) continue;
+        const auto first = layout.bodies.begin() + group.bodiesBegin, last = layout.bodies.begin() + group.bodiesEnd;
+        if (!std::is_sorted(first, last)) std::sort(first, last);
+        uint32_t count = 0;
+        for (uint32_t i = group.bodiesBegin; i < group.bodiesEnd; ++i) {
+            uint32_t& number = numbers[islands.rootOf[bodies.cold[layout.bodies[i]].awakePlace]];
+            if (number == Islands::kNone) number = count++;
+            layout.islandOf[i] = number;
+        }
+    }
+}
+
 void SortBodies(const BodyStore& bodies, const Islands& islands, SolverLayout& layout, ScratchArena& scratch) {
     std::span<uint32_t> next = scratch.Allocate<uint32_t>(islands.groups);
     std::fill(next.begin(), next.end(), 0u);
@@ -43,6 +61,7 @@ void SortBodies(const BodyStore& bodies, const Islands& islands, SolverLayout& l
     for (size_t i = 0; i < islands.groupOf.size(); ++i)
         if (islands.groupOf[i] != Islands::kNone) layout.bodies[next[islands.groupOf[i]]++] = bodies.awake[i];
     for (uint32_t g = 0; g < islands.groups; ++g) layout.groups[g].bodiesEnd = next[g];
+    NumberIslands(bodies, islands, layout, scratch);
 }
 
 BatchRange MakeRange(uint32_t contacts, uint32_t& batches) {
@@ -105,7 +124,6 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     count(Kind::Moving, moving);
     count(Kind::Fixed, fixed);
     std::span<const SortedJoint> joints = SortJoints(bodies, coloring, islands, store, layout, scratch);
-    const std::span<const bool> hasTrees = FindGroupsWithTrees(bodies, islands, layout.trees, scratch);
     layout.colors.clear();
     uint64_t used = 0;
     for (uint32_t g = 0; g < islands.groups; ++g) {
@@ -120,7 +138,7 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
             color.of[kFixedContacts] = MakeRange(f, layout.fixed.count);
             m = color.of[kMovingContacts].begin * kLanes;
             f = color.of[kFixedContacts].begin * kLanes;
-            MakeJointBatches(bodies, store, key, hasTrees[g], joints, layout, color);
+            MakeJointBatches(bodies, store, key, joints, layout, color);
             layout.colors.push_back(color);
         }
         layout.groups[g].colorsEnd = static_cast<uint32_t>(layout.colors.size());
@@ -250,14 +268,13 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
     const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, pairs, saved, scratch);
     const bool asSaved = saved.AreTaken(coloring, pairs);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
-    FindJointTrees(bodies, coloring, joints, step.settings, layout.trees, scratch);
-    const Islands islands = FindIslands(step, bodies, coloring, joints, pairs, layout.trees,
-                                        asSaved ? &saved.groups : nullptr, layout.groups, scratch);
+    FindHardMechanisms(bodies, coloring, joints, step.settings, layout.hard, scratch);
+    const Islands islands = FindIslands(step, bodies, coloring, joints, pairs, layout.hard,
+                                        asSaved ? &saved.groups : nullptr, layout.groups, layout.patternWords, scratch);
     layout.islands = islands.islands;
     SortBodies(bodies, islands, layout, scratch);
     SortConstraints(bodies, coloring, islands, joints, layout, scratch);
     if (!asSaved) LimitImpulses(underLoad, layout, step.settings.solver.substeps, pairs, scratch);
-    PlaceTrees(bodies, islands, joints.joints.size(), layout, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { GrowTo(list.batches, list.count); });
     const ConstraintColoring::Color& overflow = coloring.At(ConstraintColoring::kOverflow);
     SetContacts(layout.overflowMoving, overflow.Of(Kind::Moving));

@@ -16,7 +16,6 @@ struct Effort {
     // (ContactSolveSettings::StopRecovery).
     int impactIterations;
     float substepDt;  // s
-    bool hasTrees;    // see RunTrees
     float
         impulseScale;  // scales impulses in records, which are those of the system's substeps, to the group's substeps
     ContactSolveSettings contacts;
@@ -40,11 +39,6 @@ inline float LeastDampingRatio(float frequency, float h) {
     const float w = 6.28318531f * frequency;
     return std::min(0.5f * (w / kMostPushRate - h * w), kMost);
 }
-
-// The fraction of a tree's errors that a substep corrects.
-inline constexpr float kTreePush = 0.5f;
-// m/s and rad/s: a direct solution passes a push on to the whole mechanism, and a contact of it relaxes only a part.
-inline constexpr float kMostTreePush = 2.0f;
 
 // The stiffest springs hardly damp slow modes (Docs/Step.md). The springs of islands under load are half as stiff:
 // those of substeps longer by this factor.
@@ -91,7 +85,6 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     const SystemSettings& s = step.settings;
     Effort effort;
     effort.solver = s.solver;
-    effort.hasTrees = group.HasTrees();
     effort.solver.substeps = std::max<int>(s.solver.substeps, group.effort.substeps);
     effort.solver.velocityIterations = std::max<int>(s.solver.velocityIterations, group.effort.velocityIterations);
     effort.solver.positionIterations = std::max<int>(s.solver.positionIterations, group.effort.positionIterations);
@@ -110,35 +103,34 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     const float frequency = std::min(s.contactFrequency, stiffest);
     contacts.Soften(frequency, std::max(s.contactDampingRatio, LeastDampingRatio(frequency, h)), h, s.contactPushSpeed);
 
-    const PushSoftness push = PushSoftnessOf(std::min(s.jointFrequency, stiffest), s.jointDampingRatio, h);
     JointSolveSettings& joints = effort.joints;
     joints.dt = step.dt;
     joints.substepDt = h;
     joints.inverseDt = 1.0f / h;
     joints.elapsed = 0;
     joints.impulseScale = step.impulseScale * effort.impulseScale;
-    joints.pushRate = push.pushRate;
-    joints.softness = push.softness;
-    joints.treePushRate = kTreePush / h;
-    joints.maxTreePushSpeed = std::min(s.jointPushSpeed, kMostTreePush);
-    // Trees are solved exactly, and corrected by velocities.
-    const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte && !group.HasTrees();
-    if (!corrects) effort.solver.positionCorrection = PositionCorrection::SoftRelax;
+    const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte;
     contacts.relaxes = !corrects && effort.solver.positionIterations > 0;
     // Half of what the system's settings ask for: those added for gaps push joints, to which friction would react.
     effort.impactIterations = contacts.relaxes ? s.solver.velocityIterations / 2 : 0;
     contacts.baumgarte = joints.baumgarte = s.solver.baumgarte;
     contacts.mostCorrection = s.contactPushSpeed * h;
-    joints.pushes = !corrects;
     if (corrects) {
         contacts.slop = std::max(s.penetrationSlop, s.solver.baumgarteSlop);
         contacts.pushRate = contacts.stiffening = contacts.impulseScale = 0;
         contacts.massScale = 1;
-        joints.softness = {};
+    }
+    // With joints, overlaps are corrected in the poses, too: a push against rows that iterations do not satisfy would
+    // part the joints, and a heavy load would be lifted again and again.
+    if (group.hasJoints && !corrects) {
+        contacts.StopRecovery();
+        contacts.slop = std::max(s.penetrationSlop, s.solver.baumgarteSlop);
+        effort.impactIterations = 0;
+        contacts.mostCorrection = std::max(s.contactPushSpeed, s.jointPushSpeed) * h;
     }
     joints.maxPushSpeed = s.jointPushSpeed;
     joints.sleepSeconds = s.sleep.seconds;
-    joints.continues = joints.firstPass = false;
+    joints.leavesLocks = joints.continues = false;
     return effort;
 }
 

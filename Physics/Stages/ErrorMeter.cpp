@@ -155,18 +155,12 @@ void BeginErrors(const StepContext& step, const BodyStore& bodies, ErrorMeter& m
         if (IsMeasured(bodies.dynamics[body])) meter.starts[body] = StartOf(bodies, body, step.number, false);
 }
 
-void NoteMoved(const BodyStore& bodies, std::span<const uint32_t> moved, const BodyState* pseudo,
-               std::span<PushNote> pushes) {
+void NoteMoved(const BodyStore& bodies, std::span<const uint32_t> moved, std::span<PushNote> pushes) {
     for (const uint32_t body : moved) {
         const BodyState& state = bodies.states[body];
         PushNote& note = pushes[body];
         note.linear = bodies.LinearVelocityOf(body);
         note.angular = bodies.AngularVelocityOf(body);
-        if (pseudo)
-            for (int k = 0; k < 3; ++k) {
-                note.linear[k] += pseudo[body].linearVelocity[k];
-                note.angular[k] += pseudo[body].angularVelocity[k];
-            }
         for (int k = 0; k < 3; ++k) {
             note.displacement[k] = state.deltaPosition[k];
             note.turn[k] = state.deltaRotation[k];

@@ -60,9 +60,8 @@ inline size_t HeapBytes(const ErrorMeter& meter) {
 
 // Before Solve: notes the awake bodies.
 void BeginErrors(const StepContext& step, const BodyStore& bodies, ErrorMeter& meter);
-// Once poses are integrated: how bodies were moved; pseudo: velocities that come on top, by body, or null.
-void NoteMoved(const BodyStore& bodies, std::span<const uint32_t> moved, const BodyState* pseudo,
-               std::span<PushNote> pushes);
+// Once poses are integrated: how bodies were moved.
+void NoteMoved(const BodyStore& bodies, std::span<const uint32_t> moved, std::span<PushNote> pushes);
 // When a substep of h seconds has ended, before the next one changes velocities: the energy of pushes.
 void NotePushes(const BodyStore& bodies, std::span<const uint32_t> moved, float h, std::span<PushNote> pushes);
 // After all that moves bodies.

@@ -16,17 +16,19 @@ namespace fulcrum {
 
 struct Islands {
     std::span<uint32_t> groupOf;  // by index in bodies.awake: the group, or kNone without constraints
+    std::span<uint32_t> rootOf;   // likewise: the least index of its island
     uint32_t groups = 0;
     uint32_t islands = 0;
     static constexpr uint32_t kNone = ~0u;
     static constexpr uint32_t kLargeGroup = 0;  // see SolverGroup
 };
 
-// Finds islands and creates their groups, without bodies and colors. Uses scratch memory of the step. saved: restored
-// efforts, or null.
+// Finds islands and creates their groups, without bodies and colors, and the patterns of those that are solved
+// directly. Uses scratch memory of the step. saved: restored efforts, or null.
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
-                    const JointStore& joints, const PairStore& pairs, const JointTrees& trees,
-                    const Array<SavedEffort>* saved, Array<SolverGroup>& groups, ScratchArena& scratch);
+                    const JointStore& joints, const PairStore& pairs, const HardMechanisms& hard,
+                    const Array<SavedEffort>* saved, Array<SolverGroup>& groups, Array<uint32_t>& patternWords,
+                    ScratchArena& scratch);
 
 // Calls visit(color, entry) for all constraints of a kind, those without a color last.
 template <class Visit>
@@ -41,10 +43,6 @@ inline uint32_t MovingBodyOf(const ConstraintColoring::Entry& entry) {
 
 inline uint32_t GroupOf(const BodyStore& bodies, const Islands& islands, const ConstraintColoring::Entry& entry) {
     return islands.groupOf[bodies.cold[MovingBodyOf(entry)].awakePlace];
-}
-inline uint32_t GroupOf(const BodyStore& bodies, const Islands& islands, const JointTrees& trees,
-                        const JointTrees::Tree& tree) {
-    return islands.groupOf[bodies.cold[trees.slots[tree.slotsEnd - 1].body].awakePlace];
 }
 
 // Replaces each count by the sum of those before it; returns the total.

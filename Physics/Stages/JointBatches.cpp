@@ -27,6 +27,26 @@ uint32_t KindOf(const BodyStore& bodies, const Joint& joint) {
     return isRound(0) && isRound(1) ? kRoundBall : kBall;
 }
 
+// Counts the joints with rows of bodies, and of each joint its neighbors. They are few: bodies with none keep 0.
+void CountNeighbors(const ConstraintColoring& coloring, JointStore& joints, SolverLayout& layout) {
+    Array<uint32_t>& counts = layout.rowJoints;
+    const auto visitBodies = [&](auto&& visit) {
+        VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
+            Joint& joint = joints.joints[entry.constraint];
+            if (joint.maxRows == 0) return;
+            for (int side = 0; side < 2; ++side)
+                if (!joint.fixed[side]) visit(joint, joint.body[side]);
+        });
+    };
+    visitBodies([&](Joint& joint, uint32_t body) {
+        if (counts.size() <= body) counts.resize(body + 1, 0);
+        ++counts[body];
+        joint.neighbors = 0;
+    });
+    visitBodies([&](Joint& joint, uint32_t body) { joint.neighbors = std::max(joint.neighbors, counts[body] - 1); });
+    visitBodies([&](const Joint&, uint32_t body) { counts[body] = 0; });
+}
+
 // Updates the layout's list of joints and their order within a color.
 void ListJoints(const BodyStore& bodies, const ConstraintColoring& coloring, JointStore& joints, SolverLayout& layout) {
     layout.listedJoints.clear();
@@ -48,6 +68,7 @@ void ListJoints(const BodyStore& bodies, const ConstraintColoring& coloring, Joi
             {KindOf(bodies, joint) << 8 | joint.maxRows, entry.constraint, MovingBodyOf(entry), c});
     });
     std::sort(layout.listedJoints.begin(), layout.listedJoints.end());
+    CountNeighbors(coloring, joints, layout);
 }
 
 // Sets the members shared by all kinds of batches, for at most N joints; remaining lanes repeat the last joint and are
@@ -56,7 +77,7 @@ template <class Batch, size_t N>
 void FillLanes(const BodyStore& bodies, const JointStore& store, Batch& batch, const uint32_t (&)[N],
                std::span<const SortedJoint> joints) {
     batch.count = static_cast<int32_t>(joints.size());
-    batch.fixedA = batch.fixedB = batch.kinematicA = batch.kinematicB = 0;
+    batch.fixedA = batch.fixedB = batch.kinematicA = batch.kinematicB = batch.high = 0;
     for (size_t lane = 0; lane < N; ++lane) {
         const uint32_t index = joints[std::min(lane, joints.size() - 1)].joint;
         const Joint& joint = store.joints[index];
@@ -65,12 +86,14 @@ void FillLanes(const BodyStore& bodies, const JointStore& store, Batch& batch, c
             return bodies.dynamics[joint.body[side]].motion == MotionType::Kinematic;
         };
         batch.joint[lane] = index;
+        if constexpr (requires { batch.neighbors; }) batch.neighbors[lane] = joint.neighbors;
         batch.bodyA[lane] = joint.body[0];
         batch.bodyB[lane] = joint.body[1];
         batch.fixedA |= bit(joint.fixed[0]);
         batch.fixedB |= bit(joint.fixed[1]);
         batch.kinematicA |= bit(isKinematic(0));
         batch.kinematicB |= bit(isKinematic(1));
+        batch.high |= bit(joint.priority == JointPriority::High);
     }
 }
 
@@ -79,7 +102,6 @@ void FillBatch(const BodyStore& bodies, const JointStore& store, JointBatch<N>& 
                std::span<const SortedJoint> joints) {
     FillLanes(bodies, store, batch, batch.joint, joints);
     batch.rowCount = batch.rowRoom = 0;
-    batch.inTree = 0;  // see PlaceTrees
     batch.overridesMass = false;
     for (const SortedJoint& sorted : joints) {
         const Joint& joint = store.joints[sorted.joint];
@@ -138,8 +160,9 @@ std::span<const SortedJoint> SortJoints(const BodyStore& bodies, const Constrain
     return sorted;
 }
 
-void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_t place, bool hasTrees,
+void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_t place,
                       std::span<const SortedJoint>& sorted, SolverLayout& layout, ColorBatches& color) {
+    const bool isDirect = layout.groups[place / ConstraintColoring::kColors].isDirect;
     color.of[kJoints].begin = layout.joints.count;
     color.of[kBalls].begin = layout.balls.count;
     while (!sorted.empty() && sorted.front().place == place) {
@@ -147,7 +170,7 @@ void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_
         while (n < kLanes && n < sorted.size() && sorted[n].place == place &&
                KindOf(sorted[n].kind) == KindOf(sorted[0].kind))
             ++n;
-        if (IsBall(sorted.front().kind) && !hasTrees)
+        if (IsBall(sorted.front().kind) && !isDirect)
             FillBatch(bodies, joints, NextBatch(layout.balls), sorted.first(n));
         else FillBatch(bodies, joints, NextBatch(layout.joints), sorted.first(n));
         sorted = sorted.subspan(n);

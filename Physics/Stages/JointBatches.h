@@ -16,9 +16,9 @@ std::span<const SortedJoint> SortJoints(const BodyStore& bodies, const Constrain
                                         const Islands& islands, JointStore& joints, SolverLayout& layout,
                                         ScratchArena& scratch);
 
-// Partitions the joints of one color, at the front of `sorted`, into batches. Joints in trees are never in a BallBatch,
-// since trees only access the parts of JointBatch.
-void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_t place, bool hasTrees,
+// Partitions the joints of one color, at the front of `sorted`, into batches. Those of groups that are solved directly
+// are never in a BallBatch.
+void MakeJointBatches(const BodyStore& bodies, const JointStore& joints, uint32_t place,
                       std::span<const SortedJoint>& sorted, SolverLayout& layout, ColorBatches& color);
 
 // Batches of one lane for joints without a color.

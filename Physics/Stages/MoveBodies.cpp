@@ -24,7 +24,7 @@ struct Ending {
     bool fliesFreely = false;                // no contacts or joints
     bool isJointed = false;
     float slowSpeed = 0;  // m/s, see SlowSpeed
-    float pulled = 0;     // m/s, see PulledSpeed
+    float meanSpeed = 0;  // m/s, of bodies with joints
 };
 
 // A body without contacts and joints: x += v t + a t^2 / 2, exact under constant acceleration. Returns whether its
@@ -108,9 +108,9 @@ void MoveSolved(BodyStore& bodies, const JointStore& joints, Ending& ending, flo
                                    AxesOf(d, rotation), w, dt);
 }
 
-// Speed from the displacement of the step, for bodies moved by joints that are pulled together: neither
-// pseudo-velocities nor relaxed corrections appear in the velocities.
-float PulledSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) {
+// Speed from the displacement of the step, for bodies with joints: corrections of their poses are no part of the
+// velocities.
+float MeanSpeed(const BodyStore& bodies, uint32_t body, float slow, float dt) {
     const BodyState& s = bodies.states[body];
     const float inverseDt = 1.0f / dt;
     return FarthestSpeed(bodies, body, slow,
@@ -223,7 +223,7 @@ private:
         }
         ending.isJointed = joints_.HasAny(body);
         if (step_.settings.sleep.enabled && ending.isJointed)
-            ending.pulled = PulledSpeed(bodies_, body, ending.slowSpeed, step_.dt);
+            ending.meanSpeed = MeanSpeed(bodies_, body, ending.slowSpeed, step_.dt);
         return true;
     }
 
@@ -252,7 +252,7 @@ private:
         BodyDynamics& d = bodies_.dynamics[ending.body];
         const float speed =
             std::max(FarthestSpeed(bodies_, ending.body, ending.slowSpeed, ending.v, ending.turn.angularVelocity),
-                     ending.pulled);
+                     ending.meanSpeed);
         // Jointed ones keep the velocities with which they are separated.
         const bool isPushed = d.crowded && !joints_.HasAny(ending.body);
         const bool slow = !isPushed && speed < ending.slowSpeed &&

@@ -5,22 +5,24 @@
 //
 // Only bodies with constraints take part; the others are moved by Store.
 //
-// The warm start of every substep but the first costs nothing per constraint: the impulses of the last substep change
-// each body's velocity by the same amount again, which is the difference of its solved and unconstrained velocities.
-// Rows of contacts are constant within a step; joints add the change due to the rotation of their parts.
+// In islands without joints the warm start of every substep but the first costs nothing per constraint: the impulses of
+// the last substep change each body's velocity by the same amount again, which is the difference of its solved and
+// unconstrained velocities. Rows of contacts are constant within a step. Those of joints are not, and iterations leave
+// more of a mechanism unsolved: there the impulses of every substep are applied anew, scaled by island (WarmStart.h).
+// Velocity iterations and relax iterations are the same for joints, whose errors position iterations correct.
 #include <Fulcrum/Jobs/Phases.h>
+#include <Fulcrum/Physics/Stages/DirectIsland.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
-#include <Fulcrum/Physics/Stages/EnergyLimit.h>
 #include <Fulcrum/Physics/Stages/ErrorMeter.h>
 #include <Fulcrum/Physics/Stages/Integrate.h>
 #include <Fulcrum/Physics/Stages/LocalIterations.h>
 #include <Fulcrum/Physics/Stages/PrefetchLines.h>
 #include <Fulcrum/Physics/Stages/Recollide.h>
+#include <Fulcrum/Physics/Stages/ScaleWarmStarts.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
 #include <atomic>
-#include <optional>
 
 namespace fulcrum {
 
@@ -32,6 +34,13 @@ constexpr uint32_t kBodiesPerBlock = 128;
 enum class Verb : uint8_t {
     IntegrateVelocities,
     WarmStart,
+    // In groups with joints instead, in every substep:
+    AddWarmStart,
+    ApplyWarmStart,  // serial
+    ScaleImpulses,
+    // With gyroscopic torque (GyroscopicHalf):
+    FirstGyroscopic,
+    SecondGyroscopic,
     FirstVelocities,
     Velocities,
     Impacts,  // velocity iterations in which contacts leave overlaps (Effort::impactIterations)
@@ -39,17 +48,11 @@ enum class Verb : uint8_t {
     IterateVelocities,
     IterateRelax,
     LimitDepths,
-    LimitEnergy,  // serial, of islands with joints that are pushed fast (EnergyLimit.h)
-    ClearPulls,
-    FirstPull,
-    Pull,
-    StopPulls,
     IntegratePoses,
-    FirstRelax,
     Relax,
-    FirstCorrection,
     Correction,
     Separations,
+    CorrectPoses,  // of groups with joints
     NoteImpulses,  // for contact events
     NextSubstep,
     // For contacts whose bodies moved too far relative to each other (Recollide.h):
@@ -76,8 +79,10 @@ FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch, Rea
 template <class Batch>
 FULCRUM_FORCE_INLINE void Prefetch(const Batch&, Reads) {}
 
+bool IsGyroscopic(Verb verb) { return verb == Verb::FirstGyroscopic || verb == Verb::SecondGyroscopic; }
+
 bool IsOverBodies(Verb verb) {
-    return verb == Verb::IntegrateVelocities || verb == Verb::ClearPulls || verb == Verb::IntegratePoses;
+    return verb == Verb::IntegrateVelocities || verb == Verb::IntegratePoses || IsGyroscopic(verb);
 }
 
 bool IsOfRecollision(Verb verb) {
@@ -85,22 +90,34 @@ bool IsOfRecollision(Verb verb) {
 }
 
 bool IsSerial(Verb verb) {
-    return verb == Verb::IterateVelocities || verb == Verb::IterateRelax || verb == Verb::LimitDepths;
+    return verb == Verb::ApplyWarmStart || verb == Verb::IterateVelocities || verb == Verb::IterateRelax ||
+           verb == Verb::LimitDepths;
+}
+
+bool IsCorrection(Verb verb) { return verb == Verb::Correction || verb == Verb::CorrectPoses; }
+
+// Passes over the velocities of joints.
+bool SolvesJoints(Verb verb) {
+    return verb == Verb::FirstVelocities || verb == Verb::Velocities || verb == Verb::Impacts || verb == Verb::Relax;
 }
 
 class StepSolver {
 public:
-    // pseudo: zeroed pseudo-velocities of all bodies; null if the group has no joints that are far apart.
-    // pushes: by body; empty if not requested.
+    // starts: of all bodies; null if the group has no joints. islands: as many as the group has bodies, then. pushes:
+    // by body; empty if not requested.
     StepSolver(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, const SolverGroup& group,
-               const Effort& effort, BodyState* pseudo, std::span<PushNote> pushes, const LocalMemory& local)
+               const Effort& effort, WarmStart* starts, std::span<IslandWarmStart> islands, std::span<PushNote> pushes,
+               const LocalMemory& local)
         : stores_(stores),
           moved_(moved),
           bodies_(moved.store),
           layout_(layout),
           group_(group),
           effort_(effort),
-          pseudo_(pseudo),
+          starts_(starts),
+          islands_(islands),
+          addsAtEnd_(!group.isDirect && (effort.solver.positionCorrection == PositionCorrection::SoftRelax ||
+                                         effort.solver.positionIterations == 0)),
           pushes_(pushes),
           notes_(layout.notes.empty() ? nullptr : layout.notes.data()),
           rare_{stores.pairs.records.data(), moved.store.poses.data(), stores.pairs.surfaceVelocities.data(),
@@ -117,11 +134,13 @@ public:
         });
     }
 
-    // Also limits the energy of islands with joints that are pushed fast.
-    void LimitEnergyWith(std::span<uint32_t> parents, std::span<uint32_t> islandOf, std::span<uint32_t> members,
-                         std::span<IslandEnergy> islands) {
-        energyLimit_.emplace(bodies_, moved_.joints, moved_.pairs, layout_, group_, parents, islandOf, members,
-                             islands);
+    // Of a group that is solved directly. scratch: of the worker that runs it.
+    void SolveDirectlyWith(DirectIsland& island, ScratchArena& scratch) {
+        direct_ = &island;
+        directScratch_ = &scratch;
+        VisitBatches(layout_, group_, [&](const auto& batch) {
+            if constexpr (requires { batch.frictionImpulse; }) hasContacts_ = true;
+        });
     }
 
     // A group of small islands: one worker, from beginning to end.
@@ -129,7 +148,6 @@ public:
         uint8_t substep = 0;
         for (const Verb verb : verbs) {
             if (IsOverBodies(verb)) {
-                if (verb == Verb::IntegratePoses && energyLimit_) energyLimit_->NoteFree();
                 RunBodies(verb, substep,
                           std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin),
                           findings);
@@ -140,17 +158,18 @@ public:
                 continue;
             }
             if (IsSkipped(verb, substep)) continue;
-            if (verb == Verb::LimitEnergy) {
-                energyLimit_->Apply();
-                continue;
-            }
             if (IsSerial(verb)) {
                 RunIterated(verb, substep);
                 continue;
             }
-            if (group_.HasTrees()) RunTrees(verb, substep);
+            if (direct_) SolveDirectly(verb, substep);
+            if (isSolved_ && IsCorrection(verb)) direct_->NotePlaces();
             for (uint32_t c = group_.colorsBegin; c < group_.colorsEnd; ++c)
                 RunBatches({verb, substep, 0}, layout_.colors[c], 0, layout_.colors[c].Count(), findings);
+            if (isSolved_ && IsCorrection(verb)) {
+                directScratch_->Reset();
+                direct_->CorrectPoses(*directScratch_);
+            }
         }
     }
 
@@ -184,77 +203,52 @@ private:
 
     void RunBodies(Verb verb, uint8_t substep, std::span<const uint32_t> bodies, WorkerFindings& findings) {
         if (verb == Verb::IntegratePoses) {
-            IntegratePoses(moved_, bodies, h_, substep + 1 == effort_.solver.substeps, pseudo_, findings);
-            if (!pushes_.empty()) NoteMoved(bodies_, bodies, pseudo_, pushes_);
+            IntegratePoses(moved_, bodies, h_, substep + 1 == effort_.solver.substeps, findings);
+            if (!pushes_.empty()) NoteMoved(bodies_, bodies, pushes_);
+            if (starts_ && addsAtEnd_) ClearStarts(bodies);
         } else if (verb == Verb::IntegrateVelocities) {
             if (!pushes_.empty() && substep > 0) NotePushes(bodies_, bodies, h_, pushes_);
-            IntegrateVelocities(bodies_, moved_.joints, bodies, h_, substep > 0, findings);
-        } else {
-            for (const uint32_t body : bodies) pseudo_[body] = {};
+            const SubstepStart start = substep == 0 ? SubstepStart::First
+                                       : starts_    ? SubstepStart::Anew
+                                                    : SubstepStart::Carries;
+            IntegrateVelocities(bodies_, moved_.joints, bodies, h_, start, findings);
+            if (starts_ && (substep == 0 || !addsAtEnd_)) ClearStarts(bodies);
+        } else if (IsGyroscopic(verb)) {
+            const bool isFirst = verb == Verb::FirstGyroscopic;
+            AddGyroscopicTorque(bodies_, moved_.joints, bodies, h_,
+                                isFirst ? GyroscopicHalf::First : GyroscopicHalf::Second, starts_);
         }
     }
 
-    // Runs the trees of a group, before its batches.
-    void RunTrees(Verb verb, uint8_t substep) {
-        JointBatch<kLanes>* batches = layout_.joints.batches.data();
-        BodyState* states = bodies_.states.data();
-        const std::span<JointBatch<kLanes>> own = JointBatchesOf(group_);
-        const auto forTrees = [&](auto&& run) {
-            for (uint32_t t = group_.treesBegin; t < group_.treesEnd; ++t)
-                run(layout_.trees.At(layout_.trees.trees[layout_.treesByGroup[t]]));
-        };
-        const auto factorize = [&] {
-            forTrees([&](const JointTree& tree) { FactorizeTree(tree, batches, bodies_.masses.data()); });
-        };
-        const auto solve = [&](bool relax) {
-            forTrees([&](const JointTree& tree) { SolveTree(tree, batches, states, relax); });
-        };
-        switch (verb) {
-            case Verb::WarmStart: factorize(); break;
-            case Verb::FirstVelocities:
-                if (substep > 0)
-                    for (JointBatch<kLanes>& batch : own) RotateJointImpulses(batch, states);
-                solve(false);
-                break;
-            case Verb::Velocities:
-            case Verb::Impacts: solve(false); break;
-            case Verb::FirstRelax:
-            case Verb::Separations: {
-                JointSolveSettings settings = effort_.joints;
-                settings.elapsed = h_ * static_cast<float>(substep + 1);
-                settings.firstPass = true;
-                for (JointBatch<kLanes>& batch : own) UpdateJoints(batch, bodies_.ForSolver(), settings);
-                factorize();
-                if (verb == Verb::FirstRelax) solve(true);
-                break;
-            }
-            case Verb::Relax: solve(true); break;
-            case Verb::IntegrateVelocities:
-            case Verb::IterateVelocities:
-            case Verb::IterateRelax:
-            case Verb::LimitDepths:
-            case Verb::LimitEnergy:
-            case Verb::NoteImpulses:
-            case Verb::ClearPulls:
-            case Verb::FirstPull:
-            case Verb::Pull:
-            case Verb::StopPulls:
-            case Verb::IntegratePoses:
-            case Verb::FirstCorrection:
-            case Verb::Correction:
-            case Verb::StoreOutdated:
-            case Verb::Recollide:
-            case Verb::Refill:
-            case Verb::NextSubstep: break;
-        }
+    void ClearStarts(std::span<const uint32_t> bodies) {
+        for (const uint32_t body : bodies) starts_[body] = {};
     }
 
-    // The batches of a group's colors are contiguous.
-    std::span<JointBatch<kLanes>> JointBatchesOf(const SolverGroup& group) const {
-        if (group.colorsBegin == group.colorsEnd) return {};
-        const uint32_t begin = layout_.colors[group.colorsBegin].of[kJoints].begin,
-                       end = layout_.colors[group.colorsEnd - 1].of[kJoints].end;
-        return std::span(layout_.joints.batches).subspan(begin, end - begin);
+    // Before the batches of a group that is solved directly: solves its joints, which otherwise are iterated. Without
+    // contacts once a substep is enough.
+    void SolveDirectly(Verb verb, uint8_t substep) {
+        if (!SolvesJoints(verb) || (isSolved_ && !hasContacts_ && verb != Verb::FirstVelocities)) return;
+        const auto solve = [&] {
+            directScratch_->Reset();
+            return direct_->SolveVelocities(
+                hasContacts_ ? DirectIsland::From::Current : DirectIsland::From::Unconstrained, *directScratch_);
+        };
+        isSolved_ = solve();
+        if (!isSolved_ || verb != Verb::FirstVelocities) return;
+        // Joints have aimed by the velocities of the last substep: once more by those found.
+        VisitBatches(layout_, group_, [&](auto& batch) {
+            if constexpr (requires { batch.rowCount; })
+                AimJoints(batch, bodies_.states.data(), JointSettingsAt(substep));
+        });
+        solve();
+    }
+
+    // Adds the warm start to the velocities, scaled by island.
+    void ApplyWarmStart() {
+        const std::span<const uint32_t> bodies =
+            std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
+        const uint32_t* islandOf = layout_.islandOf.data() + group_.bodiesBegin;
+        scales_ = ScaleWarmStarts(bodies_, bodies, islandOf, starts_, islands_);
     }
 
     Reads ReadsOf(Verb verb) const {
@@ -283,6 +277,7 @@ private:
 
     // Additional iterations over single contacts.
     void RunIterated(Verb verb, uint8_t substep) {
+        if (verb == Verb::ApplyWarmStart) return ApplyWarmStart();
         if (verb == Verb::LimitDepths) return local_.LimitDepths(bodies_.states.data(), ContactSettingsAt(substep, 1));
         const bool relax = verb == Verb::IterateRelax;
         ContactSolveSettings settings = ContactSettingsAt(substep, relax ? 1 : 0.5f);
@@ -296,6 +291,8 @@ private:
         BodyState* states = bodies_.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
+            case Verb::AddWarmStart: AddWarmStart(batch, starts_, ContactSettingsAt(substep, 0.5f)); break;
+            case Verb::ScaleImpulses: ScaleImpulses(batch, starts_); break;
             // Poses are integrated with these velocities over the whole substep: they approximate those at its middle.
             case Verb::FirstVelocities:
             case Verb::Velocities:
@@ -303,17 +300,13 @@ private:
                 SolveContactVelocities(batch, states, VelocitySettingsAt(verb, substep));
                 local_.Check(batch, substep);
                 break;
-            case Verb::FirstPull:
-            case Verb::Pull:
-            case Verb::StopPulls: PullContacts(batch, pseudo_, effort_.contacts); break;
-            case Verb::FirstRelax:
             case Verb::Relax:
                 RelaxContacts(batch, states, ContactSettingsAt(substep, 1));
                 NoteOutdated(batch, substep);
                 local_.CheckDepths(batch, substep);
                 break;
-            case Verb::FirstCorrection:
-            case Verb::Correction: CorrectContacts(batch, states, ContactSettingsAt(substep, 1)); break;
+            case Verb::Correction:
+            case Verb::CorrectPoses: CorrectContacts(batch, states, ContactSettingsAt(substep, 1)); break;
             case Verb::Separations:
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 NoteOutdated(batch, substep);
@@ -345,14 +338,7 @@ private:
             case Verb::NoteImpulses:
                 if (batch.hasNotes) AddRowImpulses(batch, notes_);
                 break;
-            case Verb::IntegrateVelocities:
-            case Verb::IterateVelocities:
-            case Verb::IterateRelax:
-            case Verb::LimitDepths:
-            case Verb::LimitEnergy:
-            case Verb::ClearPulls:
-            case Verb::IntegratePoses:
-            case Verb::NextSubstep: break;
+            default: break;
         }
     }
 
@@ -360,32 +346,27 @@ private:
     template <class Batch>
     void RunBatch(Verb verb, uint8_t substep, Batch& batch, WorkerFindings&) {
         BodyState* states = bodies_.states.data();
-        const JointSolveSettings settings = JointSettingsAt(verb, substep);
+        const JointSolveSettings settings = JointSettingsAt(substep);
         switch (verb) {
-            case Verb::WarmStart: WarmStartJoints(batch, states); break;
+            case Verb::AddWarmStart:
+                if (substep == 0 || !addsAtEnd_) AddWarmStart(batch, states, starts_, settings);
+                break;
+            case Verb::ScaleImpulses: ScaleImpulses(batch, starts_); break;
             case Verb::FirstVelocities:
             case Verb::Velocities:
-            case Verb::Impacts: SolveJointVelocities(batch, states, settings); break;
-            case Verb::FirstPull:
-            case Verb::Pull: PullJoints(batch, pseudo_, settings); break;
-            case Verb::FirstRelax:
-            case Verb::Relax: RelaxJoints(batch, bodies_.ForSolver(), settings); break;
-            case Verb::FirstCorrection:
-            case Verb::Correction: CorrectJoints(batch, bodies_.ForSolver(), settings); break;
-            case Verb::Separations: UpdateJoints(batch, bodies_.ForSolver(), settings); break;
-            case Verb::IntegrateVelocities:
-            case Verb::IterateVelocities:
-            case Verb::IterateRelax:
-            case Verb::LimitDepths:
-            case Verb::LimitEnergy:
-            case Verb::NoteImpulses:
-            case Verb::ClearPulls:
-            case Verb::StopPulls:
-            case Verb::IntegratePoses:
-            case Verb::StoreOutdated:
-            case Verb::Recollide:
-            case Verb::Refill:
-            case Verb::NextSubstep: break;
+            case Verb::Impacts:
+            case Verb::Relax:
+                if (!isSolved_) SolveJointVelocities(batch, states, settings);
+                break;
+            case Verb::Correction:
+            case Verb::CorrectPoses: {
+                JointSolveSettings atEnd = settings;
+                atEnd.continues = true;
+                const bool adds = addsAtEnd_ && verb == Verb::CorrectPoses && substep + 1 < effort_.solver.substeps;
+                CorrectJoints(batch, bodies_.ForSolver(), adds ? starts_ : nullptr, atEnd);
+                break;
+            }
+            default: break;
         }
     }
 
@@ -402,6 +383,8 @@ private:
     // Whether no contact is outdated at the beginning of this substep, has a large velocity error in it, or is too
     // deep.
     bool IsSkipped(Verb verb, uint8_t substep) const {
+        if (verb == Verb::ApplyWarmStart) return false;
+        if (verb == Verb::ScaleImpulses) return !scales_;
         if (verb == Verb::LimitDepths) return !local_.IsAnyTooDeepIn(substep);
         if (IsSerial(verb)) return !local_.AreNeededIn(substep);
         return IsOfRecollision(verb) && lastOutdated_.load(std::memory_order_relaxed) != substep;
@@ -412,14 +395,11 @@ private:
         return stores;
     }
 
-    JointSolveSettings JointSettingsAt(Verb verb, uint8_t substep) const {
+    JointSolveSettings JointSettingsAt(uint8_t substep) const {
         JointSolveSettings settings = effort_.joints;
         settings.elapsed = h_ * static_cast<float>(substep + 1);
-        settings.continues = verb == Verb::FirstVelocities && substep > 0 && !effort_.hasTrees;
-        settings.firstPass =
-            verb == Verb::FirstPull || verb == Verb::FirstCorrection ||
-            ((verb == Verb::FirstRelax || (verb == Verb::Separations && effort_.solver.positionIterations == 0)) &&
-             !effort_.hasTrees);
+        settings.continues = substep > 0;
+        settings.leavesLocks = isSolved_;
         return settings;
     }
 
@@ -445,33 +425,34 @@ private:
     SolverLayout& layout_;
     const SolverGroup& group_;
     const Effort& effort_;
-    BodyState* pseudo_;
+    WarmStart* starts_;
+    std::span<IslandWarmStart> islands_;
+    // Joints add the warm start of the next substep as their poses are corrected; not where trees correct more after
+    // that.
+    bool addsAtEnd_;
+    bool scales_ = false;  // some warm start of this substep is scaled
     std::span<PushNote> pushes_;
     ContactNote* notes_;  // by record; null without contact events
     RareContactData rare_;
     float h_;                            // s, of a substep
     std::atomic<int> lastOutdated_ = 0;  // the substep, from 1, after which some contact was outdated last
     LocalIterations local_;
-    std::optional<EnergyLimit> energyLimit_;  // if the group's loop has LimitEnergy
+    DirectIsland* direct_ = nullptr;  // if the group is solved directly
+    ScratchArena* directScratch_ = nullptr;
+    bool hasContacts_ = false;  // then
+    bool isSolved_ = false;     // directly, in the last pass
 };
 
-// Iterations over the pseudo-velocities per substep, for groups with joints that are far apart.
-constexpr int kPullIterations = 4;
-// Additional iterations over contacts only, so that non-penetration wins.
-constexpr int kStopIterations = 2;
-
-// Verbs that a group needs because of some of its joints.
+// Verbs that a group needs because of its joints.
 struct JointVerbs {
-    bool pulls = false;         // some are far apart
-    bool limitsEnergy = false;  // some are pushed fast
-    bool IsAny() const { return pulls || limitsEnergy; }
+    bool any = false;         // it has joints
+    bool gyroscopic = false;  // some jointed body of the step may feel gyroscopic torque
 };
 
 // The solver loop as the sequence of its verbs. notes: for contact events.
 std::span<const Verb> LoopOf(const Effort& effort, const JointVerbs& joints, bool notes, ScratchArena& scratch) {
     const SolverSettings& settings = effort.solver;
-    const size_t longest = static_cast<size_t>(settings.velocityIterations + settings.positionIterations +
-                                               kPullIterations + kStopIterations + 16);
+    const size_t longest = static_cast<size_t>(settings.velocityIterations + 2 * settings.positionIterations + 23);
     std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
@@ -479,27 +460,32 @@ std::span<const Verb> LoopOf(const Effort& effort, const JointVerbs& joints, boo
             for (const Verb verb : {Verb::NextSubstep, Verb::StoreOutdated, Verb::Recollide, Verb::Refill})
                 verbs[n++] = verb;
         verbs[n++] = Verb::IntegrateVelocities;
-        if (substep == 0) verbs[n++] = Verb::WarmStart;
+        if (joints.any) {
+            verbs[n++] = Verb::AddWarmStart;
+            if (joints.gyroscopic) verbs[n++] = Verb::FirstGyroscopic;
+            verbs[n++] = Verb::ApplyWarmStart;
+            verbs[n++] = Verb::ScaleImpulses;
+        } else if (substep == 0) {
+            verbs[n++] = Verb::WarmStart;
+        }
         for (int i = 0; i < settings.velocityIterations; ++i)
             verbs[n++] = i == 0                        ? Verb::FirstVelocities
                          : i < effort.impactIterations ? Verb::Impacts
                                                        : Verb::Velocities;
         verbs[n++] = Verb::IterateVelocities;
-        if (joints.pulls) {
-            verbs[n++] = Verb::ClearPulls;
-            for (int i = 0; i < kPullIterations; ++i) verbs[n++] = i == 0 ? Verb::FirstPull : Verb::Pull;
-            for (int i = 0; i < kStopIterations; ++i) verbs[n++] = Verb::StopPulls;
-        }
         verbs[n++] = Verb::IntegratePoses;
         const bool corrects = settings.positionCorrection == PositionCorrection::Baumgarte;
-        const Verb first = corrects ? Verb::FirstCorrection : Verb::FirstRelax,
-                   next = corrects ? Verb::Correction : Verb::Relax;
-        for (int i = 0; i < settings.positionIterations; ++i) verbs[n++] = i == 0 ? first : next;
+        for (int i = 0; i < settings.positionIterations; ++i) {
+            verbs[n++] = corrects ? Verb::Correction : Verb::Relax;
+        }
         // The next substep needs current separations.
         if (corrects || settings.positionIterations == 0) verbs[n++] = Verb::Separations;
         else verbs[n++] = Verb::IterateRelax;
         verbs[n++] = Verb::LimitDepths;
-        if (joints.limitsEnergy) verbs[n++] = Verb::LimitEnergy;
+        if (joints.any && (!corrects || settings.positionIterations == 0)) {
+            verbs[n++] = Verb::CorrectPoses;
+        }
+        if (joints.gyroscopic) verbs[n++] = Verb::SecondGyroscopic;
         if (notes) verbs[n++] = Verb::NoteImpulses;
     }
     return verbs.first(n);
@@ -523,66 +509,57 @@ std::span<const Phase> PhasesOf(std::span<const Verb> verbs, const SolverLayout&
     return phases.first(n);
 }
 
-// Whether some joint of the group is far apart.
-bool PullsJoints(const SolverLayout& layout, const SolverGroup& group) {
-    bool far = false;
-    const auto note = [&](const auto& batch) {
-        if constexpr (requires { batch.far; }) far |= batch.far;
-    };
-    VisitBatches(layout, group, note);
-    if (&group == &layout.groups.front())
-        ForEachOverflowList(layout, [&](const auto& batches) {
-            for (const auto& batch : batches) note(batch);
-        });
-    return far;
-}
-
-// Runs the verbs returned by loopOf(effort, JointVerbs) for every group. Of the step: some joints are far apart and are
-// pulled, and some are pushed fast.
+// Runs the verbs returned by loopOf(effort, JointVerbs) for every group. isGyroscopic: JointVerbs::gyroscopic.
 template <class LoopOfEffort>
-void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, const JointVerbs& ofStep,
+void RunVerbs(const CollideStores& stores, const MovedBodies& moved, SolverLayout& layout, bool isGyroscopic,
               std::span<PushNote> pushes, const StepWorkers& workers, LoopOfEffort&& loopOf) {
     const StepContext& step = stores.step;
     const std::span<const SolverGroup> groups = layout.groups;
     ScratchArena& scratch = workers.scratch;
     const size_t bodies = moved.store.states.size();
-    const std::span<BodyState> pseudo = scratch.Allocate<BodyState>(ofStep.pulls ? bodies : 0);
-    std::ranges::fill(pseudo, BodyState{});
-    std::span<JointVerbs> verbsOf = scratch.Allocate<JointVerbs>(groups.size());
-    bool limitsAny = false;
-    for (size_t g = 0; g < groups.size(); ++g) {
-        verbsOf[g] = {ofStep.pulls && PullsJoints(layout, groups[g]),
-                      ofStep.limitsEnergy && PushesJoints(layout, groups[g])};
-        limitsAny |= verbsOf[g].limitsEnergy;
-    }
-    const std::span<uint32_t> parents = scratch.Allocate<uint32_t>(limitsAny ? bodies : 0),
-                              islandOf = scratch.Allocate<uint32_t>(limitsAny ? bodies : 0);
-    std::span<std::span<IslandEnergy>> islands = scratch.Allocate<std::span<IslandEnergy>>(groups.size());
-    std::span<std::span<uint32_t>> members = scratch.Allocate<std::span<uint32_t>>(groups.size());
-    for (size_t g = 0; g < groups.size(); ++g) {
-        const size_t count = verbsOf[g].limitsEnergy ? groups[g].bodiesEnd - groups[g].bodiesBegin : 0;
-        islands[g] = scratch.Allocate<IslandEnergy>(count);
-        members[g] = scratch.Allocate<uint32_t>(count);
-    }
-    const auto pseudoOf = [&](size_t g) { return verbsOf[g].pulls ? pseudo.data() : nullptr; };
-    const std::span<const Verb> usual = loopOf(EffortOf(step, groups.front()), JointVerbs{});
+    const bool hasJoints = std::ranges::any_of(groups, &SolverGroup::hasJoints);
+    const std::span<WarmStart> starts = scratch.Allocate<WarmStart>(hasJoints ? bodies : 0);
+    const std::span<IslandWarmStart> islandStarts =
+        scratch.Allocate<IslandWarmStart>(hasJoints ? layout.bodies.size() : 0);
+    const auto solverOf = [&](size_t g, const Effort& effort, const LocalMemory& local) {
+        const SolverGroup& group = groups[g];
+        const uint32_t count = group.hasJoints ? group.bodiesEnd - group.bodiesBegin : 0;
+        return StepSolver(stores, moved, layout, group, effort, group.hasJoints ? starts.data() : nullptr,
+                          islandStarts.subspan(group.hasJoints ? group.bodiesBegin : 0, count), pushes, local);
+    };
+    // Most groups are one of two.
+    const std::span<const Verb> usual[2] = {
+        loopOf(EffortOf(step, {}), JointVerbs{}),
+        loopOf(EffortOf(step, {.hasJoints = true}), JointVerbs{.any = true, .gyroscopic = isGyroscopic})};
     std::span<std::span<const Verb>> loops = scratch.Allocate<std::span<const Verb>>(groups.size());
-    for (size_t g = 0; g < groups.size(); ++g)
-        loops[g] = groups[g].IsOwn() || verbsOf[g].IsAny() ? loopOf(EffortOf(step, groups[g]), verbsOf[g]) : usual;
+    for (size_t g = 0; g < groups.size(); ++g) {
+        const bool any = groups[g].hasJoints;
+        loops[g] =
+            groups[g].IsOwn() ? loopOf(EffortOf(step, groups[g]), JointVerbs{any, any && isGyroscopic}) : usual[any];
+    }
     const LocalMemory local(moved.store, layout, scratch);
+    // Memory of those that are solved directly.
+    const auto isDirect = [](const SolverGroup& group) { return group.isDirect; };
+    const std::span<uint32_t> localOf = scratch.Allocate<uint32_t>(std::ranges::any_of(groups, isDirect) ? bodies : 0);
+    const std::span<DirectIsland*> direct = scratch.Allocate<DirectIsland*>(groups.size());
+    for (size_t g = 0; g < groups.size(); ++g)
+        if (groups[g].isDirect)
+            direct[g] =
+                std::construct_at(scratch.Allocate<DirectIsland>(1).data(), moved.store, layout, groups[g],
+                                  EffortOf(step, groups[g]).substepDt, Length(step.settings.gravity), localOf, scratch);
     for (size_t g = 0; g < groups.size(); ++g) {
         if (!groups[g].isLarge) continue;
         const std::span<const Phase> phases = PhasesOf(loops[g], layout, groups[g], scratch);
         if (phases.empty()) continue;
         const Effort effort = EffortOf(step, groups[g]);
-        StepSolver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local).RunTogether(phases, workers);
+        solverOf(g, effort, local).RunTogether(phases, workers);
     }
     workers.jobs.ParallelFor(static_cast<uint32_t>(groups.size()), 1, [&](JobRange range) {
         for (uint32_t g = range.begin; g < range.end; ++g) {
             if (groups[g].isLarge) continue;
             const Effort effort = EffortOf(step, groups[g]);
-            StepSolver solver(stores, moved, layout, groups[g], effort, pseudoOf(g), pushes, local);
-            if (verbsOf[g].limitsEnergy) solver.LimitEnergyWith(parents, islandOf, members[g], islands[g]);
+            StepSolver solver = solverOf(g, effort, local);
+            if (groups[g].isDirect) solver.SolveDirectlyWith(*direct[g], workers.ofWorkers[range.worker]);
             solver.RunAlone(loops[g], workers.findings[range.worker]);
         }
     });
@@ -594,13 +571,10 @@ void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& p
            const ConstraintColoring& coloring, BodyStore& bodies, SolverLayout& layout, std::span<PushNote> pushes,
            const StepWorkers& workers) {
     if (coloring.Size() == 0) return;
-    JointVerbs ofStep;
-    for (const WorkerFindings& findings : workers.findings) {
-        ofStep.pulls |= findings.joints.far;
-        ofStep.limitsEnergy |= findings.joints.pushed;
-    }
+    bool isGyroscopic = false;
+    for (const WorkerFindings& findings : workers.findings) isGyroscopic |= findings.joints.turning;
     RunVerbs({step, bodies, colliders, joints, coloring, pairs}, {step.settings, colliders, pairs, joints, bodies},
-             layout, ofStep, pushes, workers, [&](const Effort& effort, const JointVerbs& verbs) {
+             layout, isGyroscopic, pushes, workers, [&](const Effort& effort, const JointVerbs& verbs) {
                  return LoopOf(effort, verbs, !layout.notes.empty(), workers.scratch);
              });
     if (pushes.empty()) return;

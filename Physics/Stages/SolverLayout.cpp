@@ -5,11 +5,11 @@
 namespace fulcrum {
 
 size_t HeapBytes(const SolverLayout& layout) {
-    const auto& [groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving, overflowFixed,
-                 jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup, notes, colorCount, islands,
-                 version, loadVersion] = layout;
-    return HeapBytes(groups, colors, bodies, balls, joints, moving, fixed, overflowJoints, overflowMoving,
-                     overflowFixed, jointRows, overflowRows, listedJoints, jointVersion, trees, treesByGroup,
+    const auto& [groups, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints, overflowMoving,
+                 overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion, hard, patternWords,
+                 notes, colorCount, islands, version, loadVersion] = layout;
+    return HeapBytes(groups, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints, overflowMoving,
+                     overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion, hard, patternWords,
                      colorCount, islands, version, loadVersion);
 }
 

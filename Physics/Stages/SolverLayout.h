@@ -6,19 +6,21 @@
 #include <Fulcrum/Constraints/Coloring.h>
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
 #include <Fulcrum/Constraints/Contacts/ContactNote.h>
+#include <Fulcrum/Constraints/Direct/DirectPattern.h>
 #include <Fulcrum/Constraints/Joints/BallBatch.h>
 #include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/Settings.h>
-#include <Fulcrum/Physics/Stages/JointTrees.h>
+#include <Fulcrum/Physics/Stages/HardMechanisms.h>
 
 namespace fulcrum {
 
 // Islands that are solved together. The first group contains the large islands, which are solved color by color on all
 // workers. Each other group contains some small islands, which one worker solves from start to end, in its own cache
-// and without barriers. The grouping does not influence results. An island with an effort of its own, or with trees of
-// joints, has a group of its own; a large one without trees is solved on all workers, too.
+// and without barriers. The grouping does not influence results. Islands with joints share no group with others. An
+// island that is solved directly, one with an effort of its own, or a large one with joints, has a group of its own.
 struct SolverGroup {
     bool isLarge = false;                     // solved color by color on all workers
+    bool hasJoints = false;                   // all islands of it have joints: see Solve
     uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
     uint32_t bodiesBegin = 0, bodiesEnd = 0;  // into SolverLayout::bodies
     LeastEffort effort{};                     // minimum effort, if more than the system's
@@ -27,9 +29,9 @@ struct SolverGroup {
     // 2^(-(i - 9) / 16) (Effort.h). It follows shorter substeps slowly: a sudden increase of stiffness would accelerate
     // bodies that have sunk with softer rows. 0: the stiffness of the actual substeps.
     uint8_t stiffness = 0, wantedStiffness = 0;
-    uint32_t treesBegin = 0, treesEnd = 0;  // into SolverLayout::treesByGroup
-    bool HasTrees() const { return treesEnd > treesBegin; }
-    bool IsOwn() const { return HasTrees() || effort.IsAny(); }
+    bool isDirect = false;                         // one island, solved directly: see DirectIsland.h
+    uint32_t patternBegin = 0, patternBlocks = 0;  // then: into SolverLayout::patternWords; DirectPattern::Blocks
+    bool IsOwn() const { return isDirect || effort.IsAny(); }
 };
 
 // Kinds of batches of a color, in the order of solving.
@@ -73,7 +75,8 @@ struct ListedJoint {
 struct SolverLayout {
     Array<SolverGroup> groups;  // empty: nothing to solve
     Array<ColorBatches> colors;
-    Array<uint32_t> bodies;  // dynamic bodies with constraints, by group
+    Array<uint32_t> bodies;    // dynamic bodies with constraints, by group; sorted in groups with joints
+    Array<uint32_t> islandOf;  // by place in `bodies`, of groups with joints: the island, from 0 in each group
     BatchList<BallBatch<kLanes>> balls;
     BatchList<JointBatch<kLanes>> joints;
     BatchList<ContactBatch<kLanes, false>> moving;
@@ -85,9 +88,10 @@ struct SolverLayout {
     Array<JointRows<kLanes>> jointRows;  // storage of the batches' rows
     Array<JointRows<1>> overflowRows;
     Array<ListedJoint> listedJoints;  // sorted
+    Array<uint32_t> rowJoints;        // by body: joints with rows while they are counted, else 0
     uint64_t jointVersion = 0;        // version of the coloring from which the list was made
-    JointTrees trees;
-    Array<uint32_t> treesByGroup;  // indices of trees, by group
+    HardMechanisms hard;
+    Array<uint32_t> patternWords;  // DirectPattern::Words of groups that are solved directly
     Array<ContactNote> notes;      // by contact, zero if not in a batch; empty without contact events
     uint32_t colorCount = 0;       // colors in use
     uint32_t islands = 0;
@@ -96,6 +100,11 @@ struct SolverLayout {
 
     bool HasJoints() const { return balls.count + joints.count > 0 || !overflowJoints.empty(); }
     size_t OverflowCount() const;  // number of constraints without a color
+    // Of a group that is solved directly: of its bodies in their order.
+    DirectPattern PatternOf(const SolverGroup& group) const {
+        const uint32_t count = group.bodiesEnd - group.bodiesBegin;
+        return {count, group.patternBlocks, {}, std::span(patternWords).subspan(group.patternBegin)};
+    }
 };
 
 // Calls f(list, BatchKind) for each kind of batch. A new kind needs an enumerator, a list and a line here, and

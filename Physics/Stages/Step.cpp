@@ -9,6 +9,7 @@
 #include <Fulcrum/Physics/World/BodyPairs.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/SteadyPushes.h>
+#include <Fulcrum/Physics/World/Teleports.h>
 
 #include <algorithm>
 #include <chrono>
@@ -238,7 +239,7 @@ void CountBodies(const WorldState& world, const SolverLayout& solver, StepReport
 
 // Runs all stages and records their times.
 void RunStages(WorldState& world, StepState& state, const StepContext& step) {
-    const StepWorkers workers{*world.jobs, state.findings, state.scratch};
+    const StepWorkers workers{*world.jobs, state.findings, state.scratch, state.ofWorkers};
     const Clock::time_point start = Clock::now();
     Clock::time_point last = start;
     for (size_t i = 0; i < std::size(kStages); ++i) {
@@ -268,6 +269,7 @@ void VisitEfforts(const SolverSettings& settings, const BodyStore& bodies, const
 }
 
 void RunStep(WorldState& world, StepState& state, double dt) {
+    if (dt >= kShortestStep) FollowMovedBodies(world);
     world.coloring.Settle();
     ForgetRemoved(world);
     world.pendingTrees.Suspend();

@@ -34,6 +34,7 @@ struct StepWorkers {
     JobSystem& jobs;
     std::span<WorkerFindings> findings;  // by worker
     ScratchArena& scratch;               // of the step
+    std::span<ScratchArena> ofWorkers;   // by worker: reset by each user
 };
 
 }  // namespace fulcrum

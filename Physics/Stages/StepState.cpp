@@ -30,10 +30,10 @@ size_t HeapBytes(const CrowdState& crowd) {
 }
 
 size_t HeapBytes(const StepState& step) {
-    const auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
+    const auto& [lastSubstepDt, stiffnessDt, report, findings, scratch, ofWorkers, pairs, crowd, began, seams, solver,
                  savedEfforts, sleepCandidates, sweeps, sensing, events, errors] = step;
-    return HeapBytes(lastSubstepDt, stiffnessDt, report, findings, scratch, pairs, crowd, began, seams, solver,
-                     savedEfforts, sleepCandidates, sweeps, sensing, events, errors);
+    return HeapBytes(lastSubstepDt, stiffnessDt, report, findings, scratch, ofWorkers, pairs, crowd, began, seams,
+                     solver, savedEfforts, sleepCandidates, sweeps, sensing, events, errors);
 }
 
 }  // namespace fulcrum

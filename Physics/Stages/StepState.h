@@ -139,6 +139,7 @@ struct StepState {
     StepReport report;
     Array<WorkerFindings> findings;  // by worker
     ScratchArena scratch;
+    Array<ScratchArena> ofWorkers;  // by worker
 
     PairUpdates pairs;
     CrowdState crowd;

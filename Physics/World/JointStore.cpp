@@ -61,7 +61,6 @@ void JointStore::Forget(uint32_t index) {
     for (float(*impulse)[3] : {&record.ownImpulse, &record.ownAngularImpulse, &record.lockForce, &record.lockTorque,
                                &record.totalForce, &record.totalTorque})
         std::fill(std::begin(*impulse), std::end(*impulse), 0.0f);
-    record.wasPulled = 0;
     types[index]->impulses.fill(0.0f);
     types[index]->forces.fill(0.0f);
 }
@@ -99,8 +98,9 @@ bool JointStore::ForbidsContact(uint32_t bodyA, uint32_t bodyB) const {
 size_t HeapBytes(const Joint& joint) { return joint.type ? sizeof(JointType) : 0; }
 
 size_t HeapBytes(const JointStore& store) {
-    const auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, first, free, count] = store;
-    return HeapBytes(records, types, joints, gaps, breakable, targetCount, strainVersion, first, free, count);
+    const auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, moved, first, free, count] =
+        store;
+    return HeapBytes(records, types, joints, gaps, breakable, targetCount, strainVersion, moved, first, free, count);
 }
 
 }  // namespace fulcrum

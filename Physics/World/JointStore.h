@@ -46,8 +46,9 @@ struct Joint {
     uint32_t body[2] = {0, 0};      // A and B
     uint32_t next[2] = {~0u, ~0u};  // the next joint of A and of B
     std::unique_ptr<JointType> type;
-    JointLocks locks;      // locks of the type, as known to the layout
-    uint32_t maxRows = 0;  // MaxRows of the type, likewise
+    JointLocks locks;        // locks of the type, as known to the layout
+    uint32_t maxRows = 0;    // MaxRows of the type, likewise
+    uint32_t neighbors = 0;  // JointBatch::neighbors, likewise
     ColorSlot color;
     uint32_t generation = 0;
     bool exists = false;
@@ -62,7 +63,6 @@ struct Joint {
     float errorTarget = 0;  // see JointSettings
     MassOverride massOverride;
     uint64_t userData = 0;
-    uint64_t teleportedBefore = 0;  // the step before which a body of its mechanism was last teleported
 
     void SetMassOverride(const MassOverride& o) {
         massOverride = o;
@@ -72,6 +72,12 @@ struct Joint {
 };
 
 size_t HeapBytes(const Joint& joint);
+
+// A body with joints that the user has put elsewhere since the last step, and its center frame before.
+struct MovedBody {
+    uint32_t body = 0;
+    Pose before;
+};
 
 class JointStore {
 public:
@@ -85,6 +91,7 @@ public:
     IndexSet breakable;
     uint32_t targetCount = 0;    // joints with an errorTarget
     uint64_t strainVersion = 0;  // incremented when a joint begins to be strained
+    Array<MovedBody> moved;      // in the order in which they were moved first; empty after a step
 
     uint32_t Count() const { return count_; }
     // Room for more joints of bodies below `bodies`, and to free all.

@@ -16,6 +16,7 @@ void ReserveForChange(WorldState& world, const Additions& more) {
     colliders.movingTree.ReserveInsertions(more.inMoving, allColliders);
     colliders.sensorTree.ReserveInsertions(more.inSensors, allColliders);
     joints.Reserve(more.joints, allBodies);
+    if (joints.Count() > 0) ReserveMore(joints.moved, more.placed);
     const size_t allJoints = joints.joints.size() + more.joints;
     if (allJoints > 0) world.coloring.ReserveBodies(static_cast<uint32_t>(allBodies));
     world.coloring.Postpone(allJoints);

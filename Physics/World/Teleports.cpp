@@ -5,32 +5,26 @@
 #include <Fulcrum/Physics/World/BodyColliders.h>
 #include <Fulcrum/Physics/World/Colors.h>
 #include <Fulcrum/Physics/World/FatBounds.h>
+#include <Fulcrum/Physics/World/IndexSet.h>
+#include <Fulcrum/Physics/World/JointErrors.h>
 #include <Fulcrum/Physics/World/Waking.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace fulcrum {
 
 namespace {
 
-// Tells all joints of the body's mechanism, once between two steps.
-void NoteTeleport(WorldState& world, uint32_t body) {
-    constexpr float kSecondsOfTeleport = 5;  // in which a mechanism comes together, see Docs/Joints.md
-    JointStore& store = world.joints;
-    Array<uint32_t>& bodies = world.sleeping.pending;
-    bodies.clear();
-    bodies.push_back(body);
-    while (!bodies.empty()) {
-        const uint32_t from = bodies.back();
-        bodies.pop_back();
-        store.VisitOf(from, [&](uint32_t index) {
-            Joint& joint = store.joints[index];
-            if (std::exchange(joint.teleportedBefore, world.step + 1) == world.step + 1) return;
-            store.records[index].secondsOfTeleport = kSecondsOfTeleport;
-            const int other = 1 - joint.SideOf(from);
-            if (!joint.fixed[other]) bodies.push_back(joint.body[other]);
-        });
+// Of bodies that are each named once. The first pose since the last step counts.
+void NoteMoved(WorldState& world, std::span<const BodyPlace> places) {
+    Array<MovedBody>& moved = world.joints.moved;
+    const size_t before = moved.size();
+    for (const BodyPlace& place : places) {
+        const auto earlier = std::span(moved).first(before);
+        if (!world.joints.HasAny(place.body) ||
+            std::ranges::find(earlier, place.body, &MovedBody::body) != earlier.end())
+            continue;
+        moved.push_back({place.body, world.bodies.ExactCenterPoseOf(place.body)});
     }
 }
 
@@ -59,77 +53,120 @@ void WakeAround(WorldState& world, uint32_t body) {
 }
 
 // Bodies as indices or places.
-template <class Bodies, class BodyOf, class PoseOf, class IsTorn>
-void TeleportAll(WorldState& world, const Bodies& bodies, const BodyOf& bodyOf, const PoseOf& poseOf,
-                 const IsTorn& isTorn) {
+template <class Bodies, class BodyOf, class PoseOf>
+void TeleportAll(WorldState& world, const Bodies& bodies, const BodyOf& bodyOf, const PoseOf& poseOf) {
     for (const auto& body : bodies) WakeAround(world, bodyOf(body));
     for (const auto& body : bodies) world.bodies.SetCenterPose(bodyOf(body), poseOf(body));
-    for (const auto& body : bodies) {
-        if (isTorn(bodyOf(body))) NoteTeleport(world, bodyOf(body));
-        UpdatePlaced(world, bodyOf(body));
-    }
+    for (const auto& body : bodies) UpdatePlaced(world, bodyOf(body));
     for (const auto& body : bodies) WakeNeighbors(world, bodyOf(body));
 }
 
+// Whether a joint is apart by more than the size of a body, or turned by more than half a radian, beyond which its rows
+// are not linear, since the other body was moved by as much. Less is corrected by the step, without hurry.
+bool IsFarApart(const WorldState& world, uint32_t joint, uint32_t body, const MovedBody& moved) {
+    constexpr float kTurned = 0.5f;
+    const float size = world.bodies.dynamics[body].outerRadius;
+    const RelativePose way = Relative(moved.before, world.bodies.ExactCenterPoseOf(moved.body));
+    if (Length(way.position) <= size && Length(RotationVectorOf<float>(way.rotation)) <= kTurned) return false;
+    const JointError error = StretchOfJoint(world, joint);
+    return error.distance > size || error.angle > kTurned;
+}
+
+class Followers {
+public:
+    explicit Followers(WorldState& world) : world_(world), given_(world.joints.moved.size()) {
+        moved_.Reserve(world.bodies.Size());
+        for (const MovedBody& moved : world.joints.moved) moved_.Insert(moved.body);
+    }
+
+    // Breadth first, from all moved bodies at once: each of the others follows that which the fewest joints separate.
+    void Place() {
+        Array<MovedBody>& moved = world_.joints.moved;
+        for (size_t i = 0; i < moved.size(); ++i) {
+            const uint32_t body = moved[i].body;
+            VisitLinked(body, [&](uint32_t joint, uint32_t other) {
+                if (moved_.Contains(other) || !IsFree(other) || (i < given_ && !MayFollow(joint, other, i))) return;
+                moved_.Insert(other);
+                moved.push_back({other, world_.bodies.ExactCenterPoseOf(other)});
+                Pose now = world_.bodies.ExactCenterPoseOf(body) * Relative(moved[i].before, moved.back().before);
+                now.rotation = Normalized(now.rotation);
+                TeleportAll(
+                    world_, std::span(&other, 1), [](uint32_t follower) { return follower; },
+                    [&](uint32_t) { return now; });
+            });
+        }
+    }
+
+private:
+    // Calls visit(joint, other body) for the joints that hold a body to others.
+    template <class Visit>
+    void VisitLinked(uint32_t body, Visit&& visit) const {
+        const JointStore& store = world_.joints;
+        store.VisitOf(body, [&](uint32_t index) {
+            const Joint& joint = store.joints[index];
+            if (joint.enabled && !joint.type->ReactsOnWorld()) visit(index, joint.body[1 - joint.SideOf(body)]);
+        });
+    }
+    const MovedBody& Moved(uint32_t body) const {
+        return *std::ranges::find(world_.joints.moved, body, &MovedBody::body);
+    }
+    bool IsFree(uint32_t body) const {
+        const BodyDynamics& d = world_.bodies.dynamics[body];
+        return d.motion == MotionType::Dynamic && !d.frozen;
+    }
+    // Whether the joint to this body, which was not moved, is far apart, and nothing else keeps the body where it is.
+    bool MayFollow(uint32_t joint, uint32_t body, size_t moved) const {
+        return IsFarApart(world_, joint, body, world_.joints.moved[moved]) && !IsAnchored(body);
+    }
+    // Whether joints hold a body to one that is immovable, or was moved but not far from it.
+    bool IsAnchored(uint32_t body) const {
+        IndexSet seen;
+        seen.Reserve(world_.bodies.Size());
+        seen.Insert(body);
+        Array<uint32_t> open = {body};
+        bool isAnchored = false;
+        while (!open.empty() && !isAnchored) {
+            const uint32_t from = open.back();
+            open.pop_back();
+            VisitLinked(from, [&](uint32_t joint, uint32_t other) {
+                if (moved_.Contains(other)) isAnchored |= !IsFarApart(world_, joint, from, Moved(other));
+                else if (!IsFree(other)) isAnchored = true;
+                else if (seen.Insert(other)) open.push_back(other);
+            });
+        }
+        return isAnchored;
+    }
+
+    WorldState& world_;
+    size_t given_;  // bodies that the user moved; those that follow come after them
+    IndexSet moved_;
+};
+
 }  // namespace
 
-PosesBefore::PosesBefore(const BodyStore& bodies, std::span<const BodyPlace> places) : bodies_(bodies) {
-    before_.reserve(places.size());
-    for (const BodyPlace& place : places) before_.push_back({place.body, bodies.ExactCenterPoseOf(place.body)});
-    std::ranges::sort(before_, {}, &BodyPlace::body);
-}
-
-bool PosesBefore::IsTorn(const JointStore& joints, uint32_t body) const {
-    bool isTorn = false;
-    joints.VisitOf(body, [&](uint32_t index) {
-        const Joint& joint = joints.joints[index];
-        isTorn |= !MovedTogether(body, joint.body[1 - joint.SideOf(body)]);
-    });
-    return isTorn;
-}
-
-bool PosesBefore::MovedTogether(uint32_t a, uint32_t b) const {
-    constexpr float kSame = 1e-4f;  // m and rad: more than rounding far out leaves, less than shows
-    const BodyPlace *beforeA = Find(a), *beforeB = Find(b);
-    if (!beforeA || !beforeB) return false;
-    const RelativePose then = Relative(beforeA->pose, beforeB->pose),
-                       now = Relative(bodies_.ExactCenterPoseOf(a), bodies_.ExactCenterPoseOf(b));
-    return Length(Vector3(now.position - then.position)) <= kSame &&
-           Length(RotationVectorOf<float>(now.rotation * then.rotation.Conjugate())) <= kSame;
-}
-
-const BodyPlace* PosesBefore::Find(uint32_t body) const {
-    const auto found = std::ranges::lower_bound(before_, body, {}, &BodyPlace::body);
-    return found != before_.end() && found->body == body ? &*found : nullptr;
-}
-
-void Teleport(WorldState& world, std::span<const BodyPlace> places, const PosesBefore& before) {
-    const auto poseOf = [&](const BodyPlace& place) {
-        const Vector3 center = world.bodies.cold[place.body].shape->Mass().centerOfMass;
-        return Pose{place.pose.position + Rotate(place.pose.rotation, center).cast<double>(), place.pose.rotation};
-    };
-    const auto isTorn = [&](uint32_t body) { return before.IsTorn(world.joints, body); };
+void Teleport(WorldState& world, std::span<const BodyPlace> places) {
+    NoteMoved(world, places);
     TeleportAll(
-        world, places, [](const BodyPlace& place) { return place.body; }, poseOf, isTorn);
+        world, places, [](const BodyPlace& place) { return place.body; },
+        [&](const BodyPlace& place) {
+            const Vector3 center = world.bodies.cold[place.body].shape->Mass().centerOfMass;
+            return Pose{place.pose.position + Rotate(place.pose.rotation, center).cast<double>(), place.pose.rotation};
+        });
 }
 
 void Teleport(WorldState& world, std::span<const uint32_t> bodies, FunctionRef<Vector3(uint32_t)> displacementOf) {
-    const auto poseOf = [&](uint32_t body) {
-        const Pose pose = world.bodies.ExactCenterPoseOf(body);
-        return Pose{pose.position + displacementOf(body).cast<double>(), pose.rotation};
-    };
-    const auto moves = [&](uint32_t body) { return std::ranges::binary_search(bodies, body); };
-    const auto isTorn = [&](uint32_t body) {
-        bool any = false;
-        world.joints.VisitOf(body, [&](uint32_t index) {
-            const Joint& joint = world.joints.joints[index];
-            const uint32_t other = joint.body[1 - joint.SideOf(body)];
-            any |= !moves(other) || displacementOf(other) != displacementOf(body);
-        });
-        return any;
-    };
     TeleportAll(
-        world, bodies, [](uint32_t body) { return body; }, poseOf, isTorn);
+        world, bodies, [](uint32_t body) { return body; },
+        [&](uint32_t body) {
+            const Pose pose = world.bodies.ExactCenterPoseOf(body);
+            return Pose{pose.position + displacementOf(body).cast<double>(), pose.rotation};
+        });
+}
+
+void FollowMovedBodies(WorldState& world) {
+    if (world.joints.moved.empty()) return;
+    Followers(world).Place();
+    world.joints.moved.clear();
 }
 
 }  // namespace fulcrum

@@ -200,6 +200,8 @@ int Drop(const Command& command, SceneInput input, const JsonOutput& json) {
 int RunFile(const Command& command, SceneInput input, const JsonOutput& json) {
     const Result<SceneDescription> read = ReadWithinMemory([&] { return ReadScene(command.file); });
     if (!read) return Fail(read.GetError().message);
+    for (const std::string& note : read.Value().notes)
+        std::fprintf(stderr, "fulcrum: note: %s: %s\n", command.file.c_str(), note.c_str());
     const std::string name = command.file.stem().string();
     const Scene scene = SceneOf(name, read.Value());
     RunOptions options = command.options;

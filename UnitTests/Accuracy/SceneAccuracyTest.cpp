@@ -55,12 +55,14 @@ TEST(LabRegistry, HasEveryScene) {
     EXPECT_EQ(
         names,
         (std::set<std::string>{
-            "projectile",     "free_rotation", "pendulum",      "point_pendulum", "incline",      "friction_isotropy",
-            "slide_to_roll",  "rolling",       "restitution",   "bouncing_field", "resting_cube", "weight",
-            "bins",           "spring",        "motor",         "gear_pulley",    "momentum",     "heavy_on_light",
-            "heavy_chain",    "long_chain",    "tall_stack",    "tiny",           "huge",         "bullet",
-            "fast_spin",      "far_away",      "time_step",     "overlap",        "coincident",   "degenerate",
-            "internal_edges", "thin",          "contradictory", "singular",       "bad_input",    "soak"}));
+            "projectile",    "free_rotation",  "pendulum",    "point_pendulum", "incline",      "friction_isotropy",
+            "slide_to_roll", "rolling",        "restitution", "bouncing_field", "resting_cube", "weight",
+            "bins",          "spring",         "motor",       "gear_pulley",    "momentum",     "heavy_on_light",
+            "four_bar",      "seven_bars",     "stewart",     "hung_chain",     "rope_of_rods", "held_gyroscope",
+            "cone",          "heavy_chain",    "long_chain",  "tall_stack",     "tiny",         "huge",
+            "bullet",        "fast_spin",      "far_away",    "time_step",      "overlap",      "coincident",
+            "degenerate",    "internal_edges", "thin",        "contradictory",  "singular",     "bad_input",
+            "soak"}));
 }
 
 TEST(LabRegistry, FindsScenesByTheirNameAndByTheirFullName) {

@@ -152,8 +152,9 @@ TEST_F(UserScene, InWhichNothingTouchesOrHoldsIsNotMeasured) {
     EXPECT_NE(advice.find("error not measured"), std::string::npos) << advice;
     EXPECT_NE(advice.find("It is not measured here"), std::string::npos) << advice;
     EXPECT_EQ(advice.find("0 %"), std::string::npos) << advice;
-    // A rod instead of the spring is stretched by the weight.
+    // A rod instead of the spring, on which the ball swings.
     spring.spring = {};
+    spring.anchorA.point = {2, 0, 0};
     scene.joints[0].settings = spring;
     ASSERT_TRUE(WriteScene(file, scene));
     const std::string ofRod = adviceFor();

@@ -181,8 +181,6 @@ TEST(Errors, ABadSystemIsNotCreated) {
         {"contactDampingRatio", ErrorCode::Negative, [](S& s) { s.contactDampingRatio = -1; }},
         {"contactPushSpeed", ErrorCode::NonPositive, [](S& s) { s.contactPushSpeed = 0; }},
         {"depenetrationSpeed", ErrorCode::NonPositive, [](S& s) { s.depenetrationSpeed = 0; }},
-        {"jointFrequency", ErrorCode::NonPositive, [](S& s) { s.jointFrequency = 0; }},
-        {"jointDampingRatio", ErrorCode::Negative, [](S& s) { s.jointDampingRatio = -1; }},
         {"jointPushSpeed", ErrorCode::NonPositive, [](S& s) { s.jointPushSpeed = -1; }},
         {"exactJointLoad", ErrorCode::NonPositive, [](S& s) { s.exactJointLoad = 0; }},
         {"exactJointLoad", ErrorCode::NonFinite,

@@ -87,9 +87,12 @@ Ids AddChain(TestWorld& world, const Position& origin) {
     return links;
 }
 
+// Damped: its joints have no friction, and an arm that lies on its hand would swing for long.
 Ids AddRagdoll(TestWorld& world, const Position& origin) {
-    const auto ragdoll = Ragdoll::Create(world.System(), Humanoid(),
-                                         {origin + Position(0, 1.2, 0), RotationAbout(Vector3(1, 0, 0), 0.3)});
+    RagdollSettings settings = Humanoid();
+    for (RagdollPart& part : settings.parts) part.body.angularDamping = 1;
+    const auto ragdoll =
+        Ragdoll::Create(world.System(), settings, {origin + Position(0, 1.2, 0), RotationAbout(Vector3(1, 0, 0), 0.3)});
     EXPECT_TRUE(ragdoll);
     if (!ragdoll) return {};
     return {ragdoll.Value().Bodies().begin(), ragdoll.Value().Bodies().end()};

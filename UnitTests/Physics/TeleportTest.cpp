@@ -84,6 +84,99 @@ TEST(SetPoses, ChangesNothingWhereOnePoseIsWrong) {
     EXPECT_EQ(world.PositionOf(b), Position(7, 2, 3));
 }
 
+// ---- What follows a body that is moved
+
+Pose Moved(const Pose& pose, const Position& by, const Quaternion& turn) {
+    return {Position(Rotate(turn, Vector3(pose.position.cast<float>())).cast<double>() + by),
+            Normalized(turn * pose.rotation)};
+}
+
+void ExpectPoses(TestWorld& world, std::span<const BodyId> bodies, std::span<const Pose> poses) {
+    for (size_t i = 0; i < bodies.size(); ++i) {
+        const Pose now = world.Bodies().GetPose(bodies[i]);
+        EXPECT_LT((now.position - poses[i].position).norm(), 1e-4) << i;
+        EXPECT_LT(Length(RotationVectorOf<float>(now.rotation * poses[i].rotation.Conjugate())), 1e-3f) << i;
+    }
+}
+
+// As one rigid body, at the next step and not before.
+TEST(AMovedBody, TakesAlongWhatHangsOnIt) {
+    const Quaternion turn = RotationAbout(Vector3(0.6f, 0, 0.8f), 2.5);
+    const Position by(100, -3, 20);
+    for (const size_t moved : {size_t{0}, size_t{2}}) {
+        TestWorld world(NoGravity());
+        const Chain chain(world, 5);
+        std::vector<Pose> there = chain.Poses(world);
+        const std::vector<Pose> before = there;
+        for (Pose& pose : there) pose = Moved(pose, by, turn);
+        ASSERT_TRUE(world.Bodies().SetPose(chain.links[moved], there[moved].position, there[moved].rotation));
+        for (size_t i = 0; i < 5; ++i) {
+            if (i == moved) continue;
+            EXPECT_EQ(world.PositionOf(chain.links[i]), before[i].position);
+        }
+        world.Step();
+        ExpectPoses(world, chain.links, there);
+        EXPECT_LT(world.Report().largestJointError, 1e-4f);
+        for (const BodyId link : chain.links) EXPECT_LT(Length(world.VelocityOf(link)), 1e-3f);
+    }
+}
+
+TEST(AMovedBody, LeavesThoseThatAreMovedToo) {
+    TestWorld world(NoGravity());
+    const Chain chain(world, 5);
+    std::vector<Pose> there = chain.Poses(world);
+    const Quaternion turn = RotationAbout(Vector3(0, 1, 0), 1.5);
+    for (size_t i = 0; i < 5; ++i) {
+        there[i] = Moved(there[i], Position(0, 30, 0), turn);
+        ASSERT_TRUE(world.Bodies().SetPose(chain.links[i], there[i].position, there[i].rotation));
+    }
+    world.Step();
+    ExpectPoses(world, chain.links, there);
+    // The two halves of a chain that is cut in two places keep to the ends that were moved.
+    for (const size_t end : {size_t{0}, size_t{4}})
+        ASSERT_TRUE(world.Bodies().SetPose(chain.links[end], there[end].position + Position(0, end == 0 ? 50 : -50, 0),
+                                           there[end].rotation));
+    for (size_t i = 0; i < 5; ++i) there[i].position.y() += i < 2 ? 50 : -50;
+    world.Step();
+    for (const size_t i : {size_t{0}, size_t{1}, size_t{3}, size_t{4}})
+        EXPECT_NEAR(world.PositionOf(chain.links[i]).y(), there[i].position.y(), 0.5) << i;
+}
+
+// What holds a body elsewhere keeps it; a small move is left to the step.
+TEST(AMovedBody, TakesNothingFromElsewhere) {
+    TestWorld world(NoGravity());
+    const Chain chain(world, 3);
+    PointJointSettings hook;
+    hook.bodyA = kWorldBody;
+    hook.bodyB = chain.links[0];
+    hook.anchorA.point = {-0.25, 5, 0};
+    ASSERT_TRUE(world.System().Joints().Create(hook));
+    ASSERT_TRUE(world.Bodies().SetPose(chain.links[2], {50, 5, 0}, {}));
+    world.Step();
+    EXPECT_LT(world.PositionOf(chain.links[1]).x(), 2);
+
+    TestWorld other(NoGravity());
+    const Chain free(other, 3);
+    ASSERT_TRUE(other.Bodies().SetPose(free.links[2], {1.0, 5.1, 0}, {}));
+    other.Step();
+    EXPECT_LT(other.PositionOf(free.links[0]).y(), 5.05);
+}
+
+TEST(AMovedBody, IsFollowedAfterASnapshotToo) {
+    TestWorld world(NoGravity()), other(NoGravity());
+    const Chain chain(world, 5), same(other, 5);
+    world.Step();
+    other.Step();
+    ASSERT_TRUE(world.Bodies().SetPose(chain.links[1], {40, 5, 7}, {}));
+    std::vector<std::byte> snapshot;
+    ASSERT_TRUE(world.System().SaveSnapshot(snapshot));
+    ASSERT_TRUE(other.System().RestoreSnapshot(snapshot));
+    world.Steps(3);
+    other.Steps(3);
+    EXPECT_EQ(world.System().HashState(), other.System().HashState());
+    EXPECT_NEAR(other.PositionOf(same.links[4]).x(), 41.5, 1e-3);
+}
+
 // ---- AddRadialImpulse
 
 // A ball of 1 kg with its surface 1.5 m from the center of a blast of radius 2 gets a quarter of the impulse.

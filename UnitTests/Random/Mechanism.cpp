@@ -39,6 +39,18 @@ std::unique_ptr<PhysicsSystem> WorldOf(const Mechanism& mechanism, const SystemS
     return world;
 }
 
+bool IsAnchored(const Mechanism& mechanism) {
+    return std::ranges::any_of(mechanism.joints, [](const BodyBatch::Joint& joint) {
+        return std::visit(
+            [](const auto& settings) {
+                if constexpr (requires { settings.bodyA; })
+                    return settings.bodyA == kWorldBody || settings.bodyB == kWorldBody;
+                else return false;
+            },
+            joint);
+    });
+}
+
 Masses MassesOf(const PhysicsSystem& world, const BatchIds& ids) {
     Masses masses;
     for (const BodyId id : ids.bodies) {

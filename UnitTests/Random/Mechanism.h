@@ -31,6 +31,9 @@ struct Trial {
 // A world of a mechanism and of nothing else. Aborts where the engine refuses it.
 std::unique_ptr<PhysicsSystem> WorldOf(const Mechanism& mechanism, const SystemSettings& settings, BatchIds& ids);
 
+// Whether a joint attaches it to the world.
+bool IsAnchored(const Mechanism& mechanism);
+
 // J/kg: the largest kinetic energy without gravity, of all bodies, by the mass of the heaviest. Exactly solved it is 0
 // if all joints are satisfied at the start and nothing drives them. Infinite if a number is not finite.
 double KineticEnergyAtRest(const Mechanism& mechanism, const Trial& trial);

@@ -24,10 +24,8 @@ constexpr int kSeeds = 40, kAllSeeds = 400;
 struct Allowed {
     int daily, all;
 };
-constexpr Allowed kPlaneAtRest = {2, 37}, kPlaneFalling = {4, 50};
-constexpr Allowed kSpaceAtRest = {6, 65}, kSpaceFalling = {9, 82};
-constexpr Allowed kTreesAtRest = {5, 56}, kTreesFalling = {5, 63};
-constexpr Allowed kGraphsAtRest = {11, 82}, kGraphsFalling = {8, 76};
+constexpr Allowed kAtRest = {0, 1};
+constexpr Allowed kPlaneFalling = {1, 9}, kSpaceFalling = {1, 18}, kTreesFalling = {3, 23}, kGraphsFalling = {4, 17};
 
 using Generator = Mechanism (*)(uint64_t seed);
 Mechanism Plane(uint64_t seed) { return RandomMachine(MachineKind::Plane, seed); }
@@ -37,11 +35,15 @@ Mechanism Graph(uint64_t seed) { return RandomStructure(StructureKind::Graph, se
 
 using Measure = double (*)(const Mechanism& mechanism, const Trial& trial);
 
-void FewExceed(Generator generator, Measure measure, double bound, const Allowed& allowed) {
+// Of those mechanisms that `takes` takes.
+template <class Takes>
+void FewExceed(Generator generator, Measure measure, double bound, const Allowed& allowed, Takes&& takes) {
     int above = 0;
     std::ostringstream seeds;
     for (int seed = 1; seed <= Cases(kSeeds, kAllSeeds); ++seed) {
-        const double value = measure(generator(static_cast<uint64_t>(seed)), Trial{});
+        const Mechanism mechanism = generator(static_cast<uint64_t>(seed));
+        if (!takes(mechanism)) continue;
+        const double value = measure(mechanism, Trial{});
         if (value <= bound) continue;
         ++above;
         seeds << " " << seed << ": " << value;
@@ -50,15 +52,18 @@ void FewExceed(Generator generator, Measure measure, double bound, const Allowed
     EXPECT_LE(above, IsAllWanted() ? allowed.all : allowed.daily) << seeds.str();
 }
 
-void FewMove(Generator generator, const Allowed& allowed) {
-    FewExceed(generator, KineticEnergyAtRest, kMostKinetic, allowed);
+void NoneMoves(Generator generator) {
+    FewExceed(generator, KineticEnergyAtRest, kMostKinetic, kAtRest, [](const Mechanism&) { return true; });
 }
-void FewRise(Generator generator, const Allowed& allowed) { FewExceed(generator, HeightGained, kMostGain, allowed); }
+// Those that hang on the world: of 500 m that the others fall in ten seconds, rounding is a centimeter.
+void FewRise(Generator generator, const Allowed& allowed) {
+    FewExceed(generator, HeightGained, kMostGain, allowed, IsAnchored);
+}
 
-TEST(NothingAtRestMoves, MachinesInAPlane) { FewMove(Plane, kPlaneAtRest); }
-TEST(NothingAtRestMoves, MachinesInSpace) { FewMove(Space, kSpaceAtRest); }
-TEST(NothingAtRestMoves, Trees) { FewMove(Tree, kTreesAtRest); }
-TEST(NothingAtRestMoves, Graphs) { FewMove(Graph, kGraphsAtRest); }
+TEST(NothingAtRestMoves, MachinesInAPlane) { NoneMoves(Plane); }
+TEST(NothingAtRestMoves, MachinesInSpace) { NoneMoves(Space); }
+TEST(NothingAtRestMoves, Trees) { NoneMoves(Tree); }
+TEST(NothingAtRestMoves, Graphs) { NoneMoves(Graph); }
 TEST(NothingRisesByItself, MachinesInAPlane) { FewRise(Plane, kPlaneFalling); }
 TEST(NothingRisesByItself, MachinesInSpace) { FewRise(Space, kSpaceFalling); }
 TEST(NothingRisesByItself, Trees) { FewRise(Tree, kTreesFalling); }

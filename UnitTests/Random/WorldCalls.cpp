@@ -44,8 +44,6 @@ void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcom
     mostly(settings.contactFrequency, 10, 100);
     mostly(settings.contactDampingRatio, 0.5f, 2);
     mostly(settings.contactPushSpeed, 1, 10);
-    mostly(settings.jointFrequency, 10, 100);
-    mostly(settings.jointDampingRatio, 0.5f, 2);
     mostly(settings.exactJointLoad, 1, 100);
     mostly(settings.jointPushSpeed, 5, 40);
     mostly(settings.restitutionSpeed, 0, 2);

@@ -257,7 +257,6 @@ TEST(ExtremeNumbers, SettingsOfWhichNothingSensibleCanFollowAreRefused) {
         {"contactDampingRatio", [](SystemSettings& s) { s.contactDampingRatio = 2e6f; }},
         {"contactPushSpeed", [](SystemSettings& s) { s.contactPushSpeed = 2e6f; }},
         {"depenetrationSpeed", [](SystemSettings& s) { s.depenetrationSpeed = 2e6f; }},
-        {"jointDampingRatio", [](SystemSettings& s) { s.jointDampingRatio = 2e6f; }},
         {"jointPushSpeed", [](SystemSettings& s) { s.jointPushSpeed = 2e6f; }},
     };
     for (const Bad& bad : list) {

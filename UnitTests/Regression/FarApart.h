@@ -17,7 +17,7 @@ enum class Kind : uint8_t { FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_KIND) Count };
 #define FULCRUM_NAME(kind) #kind,
 inline constexpr const char* kNames[] = {FULCRUM_FOR_EACH_JOINT_KIND(FULCRUM_NAME)};
 #undef FULCRUM_NAME
-inline constexpr double kFastest = 60;     // m/s: three times jointPushSpeed
+inline constexpr double kFastest = 65;     // m/s: what falls for five seconds is at 50
 inline constexpr double kTogether = 0.05;  // m or rad
 inline constexpr double kRackRatio = 3;    // rad/m
 inline constexpr double kRounding =

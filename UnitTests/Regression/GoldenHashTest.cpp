@@ -14,10 +14,10 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x6a86c7901373672cull;
-constexpr uint64_t kGoldenHashOfJoints = 0x372fbb502c40c28dull;
+constexpr uint64_t kGoldenHashOfJoints = 0xa95e20ce91b57b05ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xc1b9cf06fe6a0b0full;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x06853e5bc062476aull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x0b1260547458038eull;
 
 std::string Hex(uint64_t number) {
     char text[24];

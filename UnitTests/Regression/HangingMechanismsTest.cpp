@@ -1,5 +1,5 @@
-// Mechanisms that hang from a static body and touch nothing. Where a joint or a limit is far apart, bodies are pulled
-// by pseudo-velocities, which lifts them; the velocity that gravity gives them meanwhile must not grow.
+// Mechanisms that hang from a static body and touch nothing, at limits that contradict each other: what corrects these
+// lifts the bodies; the velocity that gravity gives them meanwhile must not grow.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
 #include <Fulcrum/UnitTests/Support/RandomPoses.h>

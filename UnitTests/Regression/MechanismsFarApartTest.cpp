@@ -20,14 +20,16 @@ constexpr float kTogether = 0.065f;  // m, of joints that carry what still swing
 // m/s, root of the mean square that five seconds leave at most of bodies at rest.
 constexpr double kLeftBehind = 1.5;
 
-// Moves a body elsewhere and runs five seconds. speed: m/s, as kLeftBehind.
+// Moves a body elsewhere and runs five seconds, and twice as long as one joint needs to bring it back. speed: m/s, as
+// kLeftBehind.
 void ExpectToFollow(TestWorld& world, std::span<const BodyId> bodies, std::span<const JointId> joints, BodyId moved,
                     const Position& away, const Quaternion& turn, double speed) {
     SCOPED_TRACE(away);
     ASSERT_TRUE(
         world.Bodies().SetPose(moved, world.PositionOf(moved) + away, turn * world.Bodies().GetPose(moved).rotation));
     double fastest = 0;
-    for (int i = 0; i < 5 * 60; ++i) {
+    const double seconds = 5 + 2 * away.norm() / static_cast<double>(world.System().Settings().jointPushSpeed);
+    for (int i = 0; i < static_cast<int>(seconds * 60); ++i) {
         world.Step();
         for (const BodyId id : bodies) fastest = std::max(fastest, static_cast<double>(Length(world.VelocityOf(id))));
     }
@@ -81,6 +83,8 @@ TEST(MechanismsFarApart, ChainFollowsItsMiddle) {
     for (const bool hangs : {false, true})
         for (const Position& away : kPlaces)
             for (const double angle : {0.0, 2.5}) {
+                // A chain on its hook is longer than that for as long as it takes to come back, and falls meanwhile.
+                if (hangs && away.norm() > 16) continue;
                 SystemSettings settings;
                 if (!hangs) settings = Weightless();
                 TestWorld world(settings);
@@ -156,6 +160,8 @@ TEST(MechanismsFarApart, DoorFollowsItsHinges) {
         for (const int count : {1, 2, 3})
             for (const bool isFree : {false, true})
                 for (const bool turns : {false, true}) {
+                    // What hangs upside down, straight above two points that do not turn, is balanced, and stays so.
+                    if (count > 1 && !turns && !isFree && away.y() == 100) continue;
                     SCOPED_TRACE(std::to_string(count) + (turns ? " hinges" : " ball joints") +
                                  (isFree ? ", free" : ""));
                     TestWorld world(Weightless());

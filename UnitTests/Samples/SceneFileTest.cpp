@@ -230,6 +230,18 @@ TEST(SceneFile, ErrorsNameThePath) {
     }
 }
 
+// What earlier versions had and this one does not need is read past, with a note.
+TEST(SceneFile, SettingsOfEarlierVersionsAreNoted) {
+    const Result<SceneDescription> read =
+        SceneFromJson(R"({"fulcrumScene": 1, "settings": {"jointFrequency": 30, "jointDampingRatio": 2}})");
+    ASSERT_TRUE(read) << read.GetError().message;
+    ASSERT_EQ(read.Value().notes.size(), 2u);
+    EXPECT_NE(std::find(read.Value().notes.begin(), read.Value().notes.end(),
+                        "settings.jointFrequency has no effect: locks of joints are hard"),
+              read.Value().notes.end());
+    EXPECT_FALSE(SceneFromJson(R"({"fulcrumScene": 1, "jointFrequency": 30})"));
+}
+
 // Readers call themselves for each level.
 TEST(SceneFile, NestedTooDeepIsRefused) {
     std::string shape = R"({"kind": "Sphere", "radius": 1})";

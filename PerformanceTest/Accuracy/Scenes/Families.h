@@ -15,6 +15,8 @@ std::vector<LabScene> RestingScenes();     // resting_cube, weight, bins
 std::vector<LabScene> DriveScenes();       // spring, motor, gear_pulley, momentum
 std::vector<LabScene> LoadScenes();        // heavy_on_light, tall_stack, tiny, huge
 std::vector<LabScene> ChainScenes();       // heavy_chain, long_chain
+std::vector<LabScene> LinkageScenes();     // four_bar, seven_bars, stewart
+std::vector<LabScene> HangingScenes();     // hung_chain, rope_of_rods, held_gyroscope, cone
 std::vector<LabScene> FastScenes();        // bullet
 std::vector<LabScene> PlaceScenes();       // far_away, time_step, soak
 std::vector<LabScene> OverlapScenes();     // overlap, coincident

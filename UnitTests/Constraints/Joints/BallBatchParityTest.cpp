@@ -11,43 +11,24 @@ namespace {
 
 constexpr uint32_t kBalls = 4 * 7 + 1;  // no multiple of any number of lanes
 
-void Move(RandomJoints& joints, float h) {
-    for (size_t body = 0; body < joints.states.size(); ++body) {
-        if (!joints.Moves(static_cast<uint32_t>(body))) continue;
-        BodyState& s = joints.states[body];
-        for (int k = 0; k < 3; ++k) {
-            s.deltaPosition[k] += s.linearVelocity[k] * h;
-            s.deltaRotation[k] += s.angularVelocity[k] * h;
-        }
-        const Vec2<float> half = HalfTurnOf<float>(Vector3(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]));
-        for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
-        // As if it had turned.
-        BodyMass& mass = joints.masses[body];
-        if (static_cast<int>(mass.flags) & BodyMass::kTurns)
-            for (float& x : mass.inverseInertia) x *= 1.1f;
-    }
-}
-
 // The whole life of joints over two substeps of two passes each.
 template <class Batches, class Verbs>
 JointFindings Live(RandomJoints& joints, Batches& batches, const Verbs& verbs) {
     JointSolveSettings settings = DefaultJointSettings();
     JointFindings findings;
-    for (auto& batch : batches) {
-        verbs.prepare(batch, settings, findings);
-        verbs.warmStart(batch);
-    }
-    for (int substep = 1; substep <= 2; ++substep) {
-        settings.elapsed = settings.substepDt * static_cast<float>(substep);
-        for (int pass = 0; pass < 2; ++pass) {
-            settings.continues = substep > 1 && pass == 0;
-            for (auto& batch : batches) verbs.solve(batch, settings);
-        }
-        Move(joints, settings.substepDt);
-        for (int pass = 0; pass < 2; ++pass) {
-            settings.firstPass = pass == 0;
-            for (auto& batch : batches) verbs.relax(batch, settings);
-        }
+    for (auto& batch : batches) verbs.prepare(batch, settings, findings);
+    for (int substep = 0; substep < 2; ++substep) {
+        settings.continues = substep > 0;
+        settings.elapsed = settings.substepDt * static_cast<float>(substep + 1);
+        std::vector<WarmStart> starts(joints.states.size());
+        for (auto& batch : batches) AddWarmStart(batch, joints.states.data(), starts.data(), settings);
+        joints.ApplyHalf(starts);
+        for (auto& batch : batches) ScaleImpulses(batch, starts.data());
+        for (int pass = 0; pass < 2; ++pass)
+            for (auto& batch : batches) SolveJointVelocities(batch, joints.states.data(), settings);
+        joints.Move(settings.substepDt);
+        for (int pass = 0; pass < 2; ++pass)
+            for (auto& batch : batches) CorrectJoints(batch, joints.Bodies(), nullptr, settings);
     }
     for (auto& batch : batches) verbs.store(batch, settings.dt);
     return findings;
@@ -58,9 +39,6 @@ struct BallVerbs {
     void prepare(auto& batch, const JointSolveSettings& s, JointFindings& findings) const {
         PrepareJoints(batch, joints.records.data(), joints.Bodies(), s, findings);
     }
-    void warmStart(auto& batch) const { WarmStartJoints(batch, joints.states.data()); }
-    void solve(auto& batch, const JointSolveSettings& s) const { SolveJointVelocities(batch, joints.states.data(), s); }
-    void relax(auto& batch, const JointSolveSettings& s) const { RelaxJoints(batch, joints.Bodies(), s); }
     void store(auto& batch, float dt) const { StoreJoints(batch, joints.records.data(), dt, 1.0f); }
 };
 
@@ -69,9 +47,6 @@ struct JointVerbs {
     void prepare(auto& batch, const JointSolveSettings& s, JointFindings& findings) const {
         PrepareJoints(batch, joints.records.data(), joints.typePointers.data(), joints.Bodies(), s, findings);
     }
-    void warmStart(auto& batch) const { WarmStartJoints(batch, joints.states.data()); }
-    void solve(auto& batch, const JointSolveSettings& s) const { SolveJointVelocities(batch, joints.states.data(), s); }
-    void relax(auto& batch, const JointSolveSettings& s) const { RelaxJoints(batch, joints.Bodies(), s); }
     void store(auto& batch, float dt) const {
         StoreJoints(batch, joints.records.data(), joints.typePointers.data(), joints.states.data(), dt, 1.0f);
     }

@@ -30,40 +30,24 @@ Solved Solve(std::span<const JointCase> cases, uint32_t seed, const RandomJoints
     BodyState* states = joints.states.data();
     JointSolveSettings settings = DefaultJointSettings();
     Solved solved;
-    for (JointBatch<N>& batch : batches) {
+    for (JointBatch<N>& batch : batches)
         PrepareJoints(batch, joints.records.data(), joints.typePointers.data(), joints.Bodies(), settings,
                       solved.findings);
-        WarmStartJoints(batch, states);
-    }
-    for (int substep = 1; substep <= 2; ++substep) {
-        settings.elapsed = settings.substepDt * static_cast<float>(substep);
-        for (int pass = 0; pass < 2; ++pass) {
-            settings.continues = substep > 1 && pass == 0;
+    for (int substep = 0; substep < 2; ++substep) {
+        settings.continues = substep > 0;
+        settings.elapsed = settings.substepDt * static_cast<float>(substep + 1);
+        std::vector<WarmStart> starts(joints.states.size());
+        for (JointBatch<N>& batch : batches) AddWarmStart(batch, states, starts.data(), settings);
+        joints.ApplyHalf(starts);
+        for (JointBatch<N>& batch : batches) ScaleImpulses(batch, starts.data());
+        for (int pass = 0; pass < 2; ++pass)
             for (JointBatch<N>& batch : batches) SolveJointVelocities(batch, states, settings);
-        }
-        for (size_t body = 0; body < joints.states.size(); ++body) {
-            if (!joints.Moves(static_cast<uint32_t>(body))) continue;
-            for (int k = 0; k < 3; ++k) {
-                states[body].deltaPosition[k] += states[body].linearVelocity[k] * settings.substepDt;
-                states[body].deltaRotation[k] += states[body].angularVelocity[k] * settings.substepDt;
-            }
-            // As if it had turned.
-            BodyMass& mass = joints.masses[body];
-            if (static_cast<int>(mass.flags) & BodyMass::kTurns)
-                for (float& x : mass.inverseInertia) x *= 1.1f;
-        }
-        for (int pass = 0; pass < 2; ++pass) {
-            settings.firstPass = pass == 0;
-            for (JointBatch<N>& batch : batches) RelaxJoints(batch, joints.Bodies(), settings);
-        }
+        joints.Move(settings.substepDt);
+        for (int pass = 0; pass < 2; ++pass)
+            for (JointBatch<N>& batch : batches) CorrectJoints(batch, joints.Bodies(), nullptr, settings);
     }
-    for (JointBatch<N>& batch : batches) RotateJointImpulses(batch, states);
-    settings.firstPass = true;
-    for (JointBatch<N>& batch : batches) UpdateJoints(batch, joints.Bodies(), settings);
-    for (JointBatch<N>& batch : batches) {
-        RotateJointImpulses(batch, states);
+    for (JointBatch<N>& batch : batches)
         StoreJoints(batch, joints.records.data(), joints.typePointers.data(), states, settings.dt, 1.0f);
-    }
     for (const JointType* type : joints.typePointers) solved.impulses.push_back(type->impulses);
     solved.states = std::move(joints.states);
     solved.records = std::move(joints.records);

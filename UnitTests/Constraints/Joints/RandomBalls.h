@@ -16,14 +16,14 @@ struct BallOptions {
     RandomJoints::Options joints;
 };
 
-inline const JointCase& PointCase() {
+inline const JointCase& PointJointCase() {
     for (const JointCase& how : AllJointCases())
         if (std::string_view(how.kind) == "point") return how;
     return AllJointCases().front();
 }
 
 inline RandomJoints RandomBalls(uint32_t count, uint32_t seed, const BallOptions& options) {
-    RandomJoints joints(std::span(&PointCase(), 1), count, seed, options.joints);
+    RandomJoints joints(std::span(&PointJointCase(), 1), count, seed, options.joints);
     for (size_t i = 0; i < joints.states.size(); ++i) {
         BodyState& state = joints.states[i];
         std::fill(std::begin(state.deltaPosition), std::end(state.deltaPosition), 0.0f);
@@ -47,6 +47,7 @@ BallBatch<N> BallsOf(const JointBatch<N>& joints, bool round) {
     balls.fixedA = joints.fixedA;
     balls.fixedB = joints.fixedB;
     balls.kinematicA = joints.kinematicA;
+    balls.high = joints.high;
     balls.kinematicB = joints.kinematicB;
     balls.round = round;
     return balls;

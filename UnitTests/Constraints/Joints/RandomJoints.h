@@ -2,7 +2,7 @@
 // the benchmarks of the joint kernels, so without a test library. One thread.
 #pragma once
 
-#include <Fulcrum/Constraints/Contacts/ContactBatch.h>
+#include <Fulcrum/Constraints/BodyLanes.h>
 #include <Fulcrum/Constraints/Joints/JointBatch.h>
 #include <Fulcrum/Physics/Joints/JointKinds.h>
 #include <Fulcrum/UnitTests/Constraints/Parts/RandomBodies.h>
@@ -132,16 +132,13 @@ inline std::span<const JointCase> AllJointCases() {
 // The solver's settings at the system's defaults.
 inline JointSolveSettings DefaultJointSettings() {
     constexpr float kSubstep = 1.0f / 240;
-    ContactSolveSettings soft{};
-    soft.Soften(60, 2, kSubstep, 3);
     JointSolveSettings settings{};
     settings.dt = 4 * kSubstep;
     settings.substepDt = kSubstep;
     settings.inverseDt = 240;
     settings.impulseScale = 1;
-    settings.pushRate = soft.pushRate;
-    settings.softness = {soft.massScale, soft.impulseScale};
     settings.maxPushSpeed = 20;
+    settings.baumgarte = 0.2f;
     return settings;
 }
 
@@ -167,6 +164,37 @@ public:
         for (uint32_t i = 2 * count; i-- > 1;) std::swap(places_[i], places_[Below(i + 1)]);
         kinds_.resize(2 * count, Kind::Dynamic);
         for (uint32_t i = 0; i < count; ++i) Add(i, cases[i % cases.size()]);
+    }
+
+    // Half of the impulses of the joints, which the caller has added to `starts`, changes the velocities.
+    void ApplyHalf(std::span<WarmStart> starts) {
+        for (size_t body = 0; body < states.size(); ++body) {
+            WarmStart& start = starts[body];
+            const float(&l)[3] = start.angularImpulse;
+            const Vector3 turn = masses[body].InverseInertia() * Vector3(l[0], l[1], l[2]);
+            for (int k = 0; k < 3; ++k) {
+                states[body].linearVelocity[k] += 0.5f * masses[body].inverseMass * start.impulse[k];
+                states[body].angularVelocity[k] += 0.5f * turn[k];
+            }
+            start.SetScale(0.5f);
+        }
+    }
+    // Moves the bodies for h seconds; inertias that turn change as if they had.
+    void Move(float h) {
+        for (size_t body = 0; body < states.size(); ++body) {
+            if (!Moves(static_cast<uint32_t>(body))) continue;
+            BodyState& s = states[body];
+            for (int k = 0; k < 3; ++k) {
+                s.deltaPosition[k] += s.linearVelocity[k] * h;
+                s.deltaRotation[k] += s.angularVelocity[k] * h;
+            }
+            const Vector3 turn(s.deltaRotation[0], s.deltaRotation[1], s.deltaRotation[2]);
+            const Vec2<float> half = HalfTurnOf<float>(turn);
+            for (int k = 0; k < 2; ++k) s.halfTurn[k] = half[k];
+            BodyMass& mass = masses[body];
+            if (static_cast<int>(mass.flags) & BodyMass::kTurns)
+                for (float& x : mass.inverseInertia) x *= 1.1f;
+        }
     }
 
     SolverBodies Bodies() { return {states.data(), masses.data(), poses.data()}; }

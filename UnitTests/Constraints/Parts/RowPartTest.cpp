@@ -248,7 +248,7 @@ TEST(RowPart, SoftSolveIsTheMapOfItsSpring) {
                     c = random.Between(0.0f, 2.0f);
         const double e = static_cast<double>(error);
         pair.SetUp(0.0f);
-        SetSpring(pair.part, static_cast<float>(h), 0.0f, error, StiffnessConstants(k, c));
+        SetSpring(pair.part, static_cast<float>(h), 0.0f, error, StiffnessConstants(k, c, SpringForm::Implicit));
         const double jv = static_cast<double>(pair.Motion()), inverse = pair.InverseMass();
         const double w2 = static_cast<double>(k) * inverse, decay = static_cast<double>(c) * inverse;
         // All ways to the same spring agree.
@@ -274,7 +274,7 @@ TEST(RowPart, AngleSpringIsTheMapOfItsSettings) {
         Pair pair(random);
         pair.part.SetJacobian(AngleJacobian(AnyDirection(random)));
         pair.part.CalculateProperties(pair.a.mass, pair.b.mass);
-        SetSpring(pair.part, static_cast<float>(h), 0.0f, 0.3f, StiffnessConstants(20.0f, 0.5f));
+        SetSpring(pair.part, static_cast<float>(h), 0.0f, 0.3f, StiffnessConstants(20.0f, 0.5f, SpringForm::Implicit));
         const double before = static_cast<double>(pair.Motion()), inverse = pair.InverseMass();
         pair.Solve();
         const double expected =

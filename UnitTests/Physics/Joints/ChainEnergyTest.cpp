@@ -32,18 +32,19 @@ TEST(ChainEnergy, RodsOnBallJointsGainNone) {
                 highest = std::max(highest, world.System().GetEnergy());
                 gap = std::max(gap, LargestGap(world, joints));
             }
-            // Within a swing the energy wavers with h w, h being the substep: 1.1, 0.7 and 0.35 % of what falls.
-            EXPECT_LT(highest - start, 0.42 * dt * falls) << count << " rods, dt " << dt;
+            // Within a swing the energy wavers with h w, h being the substep: 1.6, 0.8 and 0.4 % of what falls.
+            EXPECT_LT(highest - start, 0.45 * dt * falls) << count << " rods, dt " << dt;
             EXPECT_LT(gap, 0.01 + 0.9 * dt) << count << " rods, dt " << dt;
         }
     }
 }
 
 // The joints are off the axes of the links, whose inertia about these is 1/40 of the others: a tension of tons spins
-// them fast.
-TEST(ChainEnergy, LinksHungUpBesideTheirAxesUnderAHeavyLoad) {
+// them fast. What substeps do not resolve of that, the stiffness of the joints' arms damps.
+void HangLinksBesideTheirAxes(int substeps, double mostChange) {
     for (const double aside : {0.001, 0.01, 0.03}) {
         SystemSettings settings = NoSleep();
+        settings.solver.substeps = substeps;
         settings.layerCollides[1] &= ~2u;
         TestWorld world(settings);
         BodyId last =
@@ -64,9 +65,13 @@ TEST(ChainEnergy, LinksHungUpBesideTheirAxesUnderAHeavyLoad) {
             gap = std::max(gap, LargestGap(world, joints));
             change = std::max(change, std::fabs(world.System().GetEnergy() - start) / falls);
         }
-        EXPECT_LT(gap, 1e-3) << aside;
-        EXPECT_LT(change, 2e-3) << aside;
+        EXPECT_LT(gap, 1e-4) << aside;
+        EXPECT_LT(change, mostChange) << aside;
     }
+}
+TEST(ChainEnergy, LinksHungUpBesideTheirAxesUnderAHeavyLoad) {
+    HangLinksBesideTheirAxes(4, 0.03);
+    HangLinksBesideTheirAxes(9, 2e-3);
 }
 
 // Rods that hang from a hook, let go at 30 degrees.

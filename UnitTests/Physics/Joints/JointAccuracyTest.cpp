@@ -48,36 +48,19 @@ struct Bridge {
     std::vector<JointId> joints;
 };
 
-TEST(JointAccuracy, AnIslandGetsTheSubstepsThatMeetTheTarget) {
-    Bridge usual(kInfinity);
+// What a taut chain is parted by as it falls into its curve closes slowly, and no faster with more substeps: effort for
+// it is in vain, and the island does not keep it.
+TEST(JointAccuracy, EffortThatClosesNoGapIsNotKept) {
+    Bridge usual(kInfinity), exact(0.002f);
     usual.world.Run(7);
+    exact.world.Run(7);
     EXPECT_EQ(usual.world.Report().islandsWithMoreEffort, 0u);
-    EXPECT_GT(usual.LargestGap(), 0.008);
-    for (const float target : {0.002f, 0.0005f}) {
-        Bridge exact(target);
-        exact.world.Run(7);
-        double largest = 0;
-        int least = 64, most = 0;
-        for (int step = 0; step < 120; ++step) {
-            exact.world.Step();
-            largest = std::max(largest, exact.LargestGap());
-            ASSERT_EQ(exact.world.Report().islandsWithMoreEffort, 1u);
-            least = std::min(least, exact.world.Report().mostEffort[0].substeps);
-            most = std::max(most, exact.world.Report().mostEffort[0].substeps);
-        }
-        EXPECT_LT(largest, target);
-        EXPECT_EQ(least, most) << "efforts are not to come and go";
-    }
-}
-
-TEST(JointAccuracy, EffortsGoWhenTheLoadGoes) {
-    Bridge bridge(0.001f, 4000);
-    bridge.world.Run(4);
-    const int loaded = bridge.world.Report().mostEffort[0].substeps;
-    EXPECT_TRUE(bridge.world.Bodies().Remove(bridge.load));
-    bridge.world.Run(10);
-    EXPECT_LT(bridge.world.Report().mostEffort[0].substeps, loaded);
-    EXPECT_LT(bridge.LargestGap(), 0.001);
+    EXPECT_EQ(exact.world.Report().islandsWithMoreEffort, 0u);
+    EXPECT_LT(exact.LargestGap(), 1.01 * usual.LargestGap());
+    EXPECT_LT(usual.LargestGap(), 0.03);
+    const double gap = usual.LargestGap();
+    usual.world.Run(7);
+    EXPECT_LT(usual.LargestGap(), 0.9 * gap);
 }
 
 TEST(JointAccuracy, SameBitsOnAnyNumberOfThreads) {

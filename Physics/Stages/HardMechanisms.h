@@ -1,0 +1,30 @@
+// Finds the mechanisms whose joints iterations resolve poorly, which are solved directly (Constraints/Direct) where
+// that costs little: those that carry much more than their own bodies' mass, those with closed loops, and those with a
+// joint that has been strained (JointStrain.h). Called by the BuildIslands stage if joints were added or removed, or
+// began to be strained. Serial; the result depends only on the joints.
+#pragma once
+
+#include <Fulcrum/Jobs/ScratchArena.h>
+#include <Fulcrum/Math/Memory.h>
+#include <Fulcrum/Physics/Settings.h>
+#include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/HeapBytes.h>
+#include <Fulcrum/Physics/World/JointStore.h>
+
+namespace fulcrum {
+
+struct HardMechanisms {
+    // One dynamic body of each: of those without loops of joints, and of those with.
+    Array<uint32_t> open, closed;
+    uint64_t version = 0, strainVersion = 0;  // versions of the joints from which this was computed
+};
+inline size_t HeapBytes(const HardMechanisms& all) {
+    const auto& [open, closed, version, strainVersion] = all;
+    return HeapBytes(open, closed, version, strainVersion);
+}
+
+// Updates `found` from the colored joints. Reads the settings' exactJointLoad and solver.
+void FindHardMechanisms(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
+                        const SystemSettings& settings, HardMechanisms& found, ScratchArena& scratch);
+
+}  // namespace fulcrum
