@@ -149,18 +149,28 @@ inline Quaternion TurnOf(const Vector3& v) {
     return {v.x() * half.x(), v.y() * half.x(), v.z() * half.x(), half.y()};
 }
 
+// Rotation vectors of a step up to this length, rad, are composed as rotations; longer ones are added, since the
+// composition is singular at a full revolution.
+inline constexpr float kFarthestTurn = 5.5f;
+
 // The rotation vector, rad, of the rotation `before`, followed by that of a small turn, to first order in it (inverse
 // left Jacobian of the rotation vector). half: HalfTurnOf `before`.
 template <class Real>
 FULCRUM_FORCE_INLINE Vec3<Real> TurnedSlightly(const Vec3<Real>& before, const Vec2<Real>& half,
                                                const Vec3<Real>& turn) {
     // (1 - (t / 2) cot(t / 2)) / t^2 for an angle t.
-    const Real squared = Dot<Real>(before, before);
-    const Real series = Real(1.0f / 12) + squared * (Real(1.0f / 720) + squared * Real(1.0f / 30240));
-    const Real closed = (Real(1.0f) - Real(0.5f) * half.y() / half.x()) / Max(squared, Real(0.1f));
-    const Real gamma = Select(squared < Real(0.1f), series, closed);
-    const Vec3<Real> across = Cross<Real>(turn, before);
-    return before + turn + across * Real(0.5f) - Cross<Real>(before, across) * gamma;
+    const Real squared = Dot<Real>(before, before), largest(0.1f);
+    Real gamma = Real(1.0f / 12) + squared * (Real(1.0f / 720) + squared * Real(1.0f / 30240));
+    const Vec3<Real> across = Cross<Real>(turn, before), sum = before + turn;
+    if (!Any(squared > largest)) [[likely]]
+        return sum + across * Real(0.5f) - Cross<Real>(before, across) * gamma;
+    const Real closed = (Real(1.0f) - Real(0.5f) * half.y() / half.x()) / Max(squared, largest);
+    gamma = Select(squared > largest, closed, gamma);
+    const Vec3<Real> composed = sum + across * Real(0.5f) - Cross<Real>(before, across) * gamma;
+    Vec3<Real> result;
+    const auto isFar = squared > Real(kFarthestTurn * kFarthestTurn);
+    for (int k = 0; k < 3; ++k) result[k] = Select(isFar, Real(sum[k]), Real(composed[k]));
+    return result;
 }
 
 // Updates BodyState::halfTurn in a row of displacements from the row's rotation.

@@ -163,12 +163,6 @@ struct JointBatch {
     }
 };
 
-// Rotation vectors of a step up to this length, rad, are composed as rotations; longer ones are added, since the
-// composition is singular at a full revolution.
-namespace joints {
-inline constexpr float kFarthestTurn = 5.5f;
-}
-
 struct JointSolveSettings {
     float dt, substepDt;  // s
     float inverseDt;      // 1/s, of the substep

@@ -676,9 +676,14 @@ struct Arcs {
         constexpr float kLargest = 0.25f;  // rad, squared
         const Real most(kLargest), squaredA = Dot<Real>(a.angular, a.angular) * (h * h),
                                    squaredB = Dot<Real>(b.angular, b.angular) * (h * h);
-        part = Sqrt(most / Max(Max(squaredA, squaredB), most));
-        turnA = a.angular * part;
-        turnB = b.angular * part;
+        turnA = a.angular;
+        turnB = b.angular;
+        part = Real(1.0f);
+        if (const Real larger = Max(squaredA, squaredB); (larger > most).Any()) [[unlikely]] {
+            part = Sqrt(most / Max(larger, most));
+            turnA *= part;
+            turnB *= part;
+        }
         const auto set = [&](const Real& squared, Real& sine, Real& cosine) FULCRUM_FORCE_INLINE_LAMBDA {
             const Real t = Min(squared, most);
             sine = -t * (Real(1.0f / 6) - t * Real(1.0f / 120)) * part;

@@ -75,11 +75,10 @@ FULCRUM_FORCE_INLINE void MoveBodies(const Batch& batch, BodyState* states, Moti
                              Real(std::numeric_limits<float>::infinity());
         const Twist<Real> by{ZeroUnless<Real>(isKnown, wanted.linear), ZeroUnless<Real>(isKnown, wanted.angular)};
         const Twist<Real> from = pose.Get();
-        Vec3<Real> rotation = TurnedSlightly<Real>(
-            from.angular, Vec2<Real>(pose.row[BodyState::kHalfTurn], pose.row[BodyState::kHalfTurn + 1]), by.angular);
-        const auto isFar = Dot<Real>(from.angular, from.angular) > Real(kFarthestTurn * kFarthestTurn);
-        for (int k = 0; k < 3; ++k) rotation[k] = Select(isFar, Real(from.angular[k] + by.angular[k]), rotation[k]);
-        pose.Set({from.linear + by.linear, rotation});
+        pose.Set({from.linear + by.linear,
+                  TurnedSlightly<Real>(from.angular,
+                                       Vec2<Real>(pose.row[BodyState::kHalfTurn], pose.row[BodyState::kHalfTurn + 1]),
+                                       by.angular)});
         SetHalfTurn<Real>(pose.row);
         pose.Scatter(batch.count, fixed);
         if (!batch.turning) return;

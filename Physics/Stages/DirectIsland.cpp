@@ -440,10 +440,7 @@ void DirectIsland::CorrectPoses(ScratchArena& scratch) {
         const Vector3 w(state.angularVelocity[0], state.angularVelocity[1], state.angularVelocity[2]),
             turned = Rotate(TurnOf(turn), w);
         const Vector3 before = DisplacementOf(state).angular;
-        const bool isFar = LengthSquared(before) > kFarthestTurn * kFarthestTurn;
-        const Vector3 rotation =
-            isFar ? Vector3(before + turn)
-                  : TurnedSlightly<float>(before, Vec2<float>(state.halfTurn[0], state.halfTurn[1]), turn);
+        const Vector3 rotation = TurnedSlightly<float>(before, Vec2<float>(state.halfTurn[0], state.halfTurn[1]), turn);
         for (int k = 0; k < 3; ++k) {
             state.deltaPosition[k] += way[k];
             state.deltaRotation[k] = rotation[k];

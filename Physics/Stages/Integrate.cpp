@@ -60,13 +60,15 @@ FULCRUM_FORCE_INLINE void CorrectFlight(BodyStore& bodies, const uint32_t (&inde
 // Velocity that a body has after h seconds of damping 1/s, per unit: exp(-damping h).
 float DampingFactor(float damping, float h) { return damping > 0 ? Exp(-damping * h) : 1.0f; }
 
-// The principal axes of bodies in the world after they turned by `turn`, rad, in the step. inertia: rows of
+// The principal axes of jointed bodies in the world after their displacements in the step. inertia: rows of
 // BodyDynamics.
 template <class Real>
 FULCRUM_FORCE_INLINE Mat3<Real> AxesAfter(const BodyStore& bodies, const uint32_t (&index)[kBodies<Real>],
-                                          const Real (&inertia)[8], const Vec3<Real>& turn) {
+                                          const Real (&inertia)[8], const Rows<Real>& displacement) {
     const Rows<Real> pose(index, [&](uint32_t body) { return bodies.poses[body].Row(); });
-    const Quat<Real> rotation = RotationFromVector<Real>(turn) * QuaternionAt<BodyPose::kRotation>(pose.at);
+    const Vec3<Real> turn = displacement.Second() * displacement.at[BodyState::kHalfTurn];
+    const Quat<Real> turned{turn.x(), turn.y(), turn.z(), displacement.at[BodyState::kHalfTurn + 1]};
+    const Quat<Real> rotation = turned * QuaternionAt<BodyPose::kRotation>(pose.at);
     return ToMatrix<Real>(rotation * QuaternionAt<BodyDynamics::kPrincipalAxes>(inertia));
 }
 
@@ -130,8 +132,8 @@ FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<R
             rotation, Vec2<Real>(displacement.at[BodyState::kHalfTurn], displacement.at[BodyState::kHalfTurn + 1]),
             turn);
         const Vec3<Real> sum = rotation + turn;
-        const auto isFar = Max(Dot<Real>(rotation, rotation), Dot<Real>(sum, sum)) >
-                           Real(joints::kFarthestTurn * joints::kFarthestTurn);
+        const auto isFar =
+            Max(Dot<Real>(rotation, rotation), Dot<Real>(sum, sum)) > Real(kFarthestTurn * kFarthestTurn);
         for (int k = 0; k < 3; ++k)
             rotation[k] = Select(isJointed, Select(isFar, Real(sum[k]), composed[k]), Real(sum[k]));
     } else {
@@ -143,13 +145,14 @@ FULCRUM_FORCE_INLINE Vec3<Real> Displace(Rows<Real>& displacement, const Twist<R
     return rotation;
 }
 
-// Rotates the world inertia of bodies by `turn`, rad, since the start of the step. Joints act at the ends of bodies,
-// where an outdated inertia would give wrong torques.
+// Rotates the world inertia of jointed bodies with them. Joints act at the ends of bodies, where an outdated inertia
+// would give wrong torques.
 template <class Real, class Mask>
 FULCRUM_FORCE_INLINE void TurnInertia(BodyStore& bodies, const uint32_t (&index)[kBodies<Real>], int count,
-                                      const Mask& feels, const Vec3<Real>& turn) {
+                                      const Mask& feels, const Rows<Real>& displacement) {
     const Rows<Real> inertia(index, [&](uint32_t body) { return bodies.dynamics[body].InertiaRow(); });
-    const Sym3<Real> turned = RotatedDiagonal<Real>(AxesAfter<Real>(bodies, index, inertia.at, turn), inertia.First());
+    const Sym3<Real> turned =
+        RotatedDiagonal<Real>(AxesAfter<Real>(bodies, index, inertia.at, displacement), inertia.First());
     Rows<Real> mass(index, [&](uint32_t body) { return bodies.masses[body].Row(); });
     constexpr int i = BodyMass::kInverseInertia;
     mass.at[i] = turned.xx, mass.at[i + 1] = turned.yy, mass.at[i + 2] = turned.zz;
@@ -224,7 +227,8 @@ void IntegratePose(const MovedBodies& moved, uint32_t body, float h, bool isLast
         CorrectFlight<float>(bodies, {body}, 1, true, Vector3(a[0], a[1], a[2]), h);
     if (!isJointed) return;
     if (d.RotatesAboutTwoAxes()) return TurnAboutTwoAxes(bodies, body, turnBefore, turn);
-    if (d.HasGyroscopicTorqueAt(bodies.AngularVelocityOf(body))) TurnInertia(bodies, {body}, 1, true, turn);
+    if (d.HasGyroscopicTorqueAt(bodies.AngularVelocityOf(body)))
+        TurnInertia<float>(bodies, {body}, 1, true, displacement);
 }
 
 // The lanes of the mask whose bodies may feel a gyroscopic torque, and those that feel it at w, rad/s.
@@ -254,11 +258,12 @@ WideMask<kLanes> IsWithin(const Vec3<Lanes>& v, const Lanes& limit) {
 }
 
 // Returns false, and does nothing, if some body needs the scalar code.
-bool IntegrateVelocitiesInLanes(BodyStore& bodies, const Indices& index, int count, float h, SubstepStart start) {
+bool IntegrateVelocitiesInLanes(BodyStore& bodies, const JointStore& joints, const Indices& index, int count, float h,
+                                SubstepStart start) {
     for (uint32_t body : index) {
         const BodyDynamics& d = bodies.dynamics[body];
-        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce || d.crowded)
-            return false;
+        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce) return false;
+        if ((d.dispersing || d.crowded != 0) && (d.dispersing || !joints.HasAny(body))) return false;
     }
     const Rows<Lanes> limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
     const Lanes zero(0.0f), linearDamping = limits.at[BodyDynamics::kLinearDamping],
@@ -281,7 +286,7 @@ bool IntegratePosesInLanes(const MovedBodies& moved, const Indices& index, int c
     BodyStore& bodies = moved.store;
     for (const uint32_t body : index) {
         const BodyDynamics& d = bodies.dynamics[body];
-        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.crowded) return false;
+        if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.dispersing) return false;
     }
     const Rows<Lanes> velocity(index, [&](uint32_t body) { return bodies.states[body].VelocityRow(); });
     const Rows<Lanes> limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
@@ -291,8 +296,7 @@ bool IntegratePosesInLanes(const MovedBodies& moved, const Indices& index, int c
         return false;
     Rows<Lanes> displacement(index, [&](uint32_t body) { return bodies.states[body].PoseRow(); });
     const auto isJointed = AreJointed(moved.joints, index);
-    const Vec3<Lanes> turn =
-        Displace(displacement, Twist<Lanes>{velocity.First(), velocity.Second()}, isJointed, Lanes(h), count);
+    Displace(displacement, Twist<Lanes>{velocity.First(), velocity.Second()}, isJointed, Lanes(h), count);
     if (isLast) {
         const auto flies = Flies<Lanes>(bodies, index, velocity.First());
         if (flies.Any()) {
@@ -301,7 +305,7 @@ bool IntegratePosesInLanes(const MovedBodies& moved, const Indices& index, int c
         }
     }
     const auto feels = FeelsGyroscopicTorque(MayFeelGyroscopicTorque(bodies, index, isJointed), velocity.Second());
-    if (feels.Any()) TurnInertia(bodies, index, count, feels, turn);
+    if (feels.Any()) TurnInertia(bodies, index, count, feels, displacement);
     return true;
 }
 
@@ -320,12 +324,14 @@ void IntegrateVelocities(BodyStore& store, const JointStore& joints, std::span<c
                          SubstepStart start, WorkerFindings& findings) {
     VisitBodies(
         bodies,
-        [&](const Indices& index, int count) { return IntegrateVelocitiesInLanes(store, index, count, h, start); },
+        [&](const Indices& index, int count) {
+            return IntegrateVelocitiesInLanes(store, joints, index, count, h, start);
+        },
         [&](uint32_t body) { IntegrateVelocity(store, joints, body, h, start, findings); });
 }
 
 void AddGyroscopicTorque(BodyStore& store, const JointStore& joints, std::span<const uint32_t> bodies, float h,
-                         GyroscopicHalf half, const WarmStart* starts) {
+                         GyroscopicHalves halves, const WarmStart* starts) {
     VisitInLanes(bodies, [&](const Indices& index, int count) {
         const auto mayFeel = MayFeelGyroscopicTorque(store, index, AreJointed(joints, index));
         if (!mayFeel.Any()) return;
@@ -333,10 +339,17 @@ void AddGyroscopicTorque(BodyStore& store, const JointStore& joints, std::span<c
         Rows<Lanes> unconstrained(index, [&](uint32_t body) { return store.unconstrained[body].row; });
         const Rows<Lanes> inertia(index, [&](uint32_t body) { return store.dynamics[body].InertiaRow(); });
         const Rows<Lanes> displacement(index, [&](uint32_t body) { return store.states[body].PoseRow(); });
-        const Mat3<Lanes> axes = AxesAfter<Lanes>(store, index, inertia.at, displacement.Second());
-        const Vec3<Lanes> before = velocity.Second();
-        Vec3<Lanes> w = before;
-        if (half == GyroscopicHalf::First) {
+        const Mat3<Lanes> axes = AxesAfter<Lanes>(store, index, inertia.at, displacement);
+        const auto changeAt = [&](const Vec3<Lanes>& w) FULCRUM_FORCE_INLINE_LAMBDA {
+            return ZeroUnless<Lanes>(FeelsGyroscopicTorque(mayFeel, w),
+                                     Vec3<Lanes>(AddGyroscopicTorque<Lanes, GyroscopicRule::Reversible>(
+                                                     inertia.First(), axes, w, Lanes(0.5f * h)) -
+                                                 w));
+        };
+        Vec3<Lanes> change(Lanes(0.0f), Lanes(0.0f), Lanes(0.0f));
+        if (halves != GyroscopicHalves::First) change = changeAt(velocity.Second());
+        if (halves != GyroscopicHalves::Second) {
+            const Vec3<Lanes> w = velocity.Second() + change;
             const Rows<Lanes> start(index, [&](uint32_t body) { return starts[body].Row(); });
             InverseMass<Lanes> mass;
             GatherMass<kLanes>(index, store.masses.data(), mass);
@@ -344,13 +357,9 @@ void AddGyroscopicTorque(BodyStore& store, const JointStore& joints, std::span<c
             // What changes a velocity by more than the velocity itself is not resolved by the substep, and counts less.
             const Lanes squared = Dot<Lanes>(w, w);
             const Lanes part = squared / Max(Max(squared, Dot<Lanes>(warm, warm)), Lanes(1e-20f));
-            w += warm * part;
+            change += changeAt(Vec3<Lanes>(w + warm * part));
         }
-        const Vec3<Lanes> change = ZeroUnless<Lanes>(
-            FeelsGyroscopicTorque(mayFeel, w),
-            Vec3<Lanes>(
-                AddGyroscopicTorque<Lanes, GyroscopicRule::Reversible>(inertia.First(), axes, w, Lanes(0.5f * h)) - w));
-        velocity.Set(velocity.First(), before + change);
+        velocity.Set(velocity.First(), velocity.Second() + change);
         velocity.Write(count, mayFeel);
         // It is none by constraints.
         unconstrained.Set(unconstrained.First(), unconstrained.Second() + change);

@@ -19,16 +19,17 @@ void IntegrateVelocities(BodyStore& store, const JointStore& joints, std::span<c
                          SubstepStart start, WorkerFindings& findings);
 
 // The gyroscopic torque of jointed bodies acts for half of a substep before they turn, and for half of it after that.
-enum class GyroscopicHalf {
-    First,  // for the velocities after the warm start, which follows
-    Second  // at the poses of the end of the substep
+enum class GyroscopicHalves {
+    First,   // of this substep: for the velocities after the warm start, which follows
+    Second,  // of the substep that ends
+    Both     // the second of the last substep, then the first of this one: at the same poses
 };
 
-// Applies that half for a substep of h seconds. starts: by body. What the warm start changes of an angular velocity
+// Applies these halves for substeps of h seconds. starts: by body. What the warm start changes of an angular velocity
 // counts from before the first half, at the principal axes at which it acts: it changes the angular momentum by its
 // torque, where after the first half it would change that across by as much as the body turns.
 void AddGyroscopicTorque(BodyStore& store, const JointStore& joints, std::span<const uint32_t> bodies, float h,
-                         GyroscopicHalf half, const WarmStart* starts);
+                         GyroscopicHalves halves, const WarmStart* starts);
 
 // Inputs of IntegratePoses, and the bodies, which it moves. Colliders and pairs are used for the contacts of dispersing
 // bodies.

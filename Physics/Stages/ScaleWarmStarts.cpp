@@ -59,17 +59,17 @@ bool ScaleWarmStarts(BodyStore& store, std::span<const uint32_t> bodies, const u
     });
     bool scales = false;
     for (IslandWarmStart& sums : islands) {
-        // Zero also for what is not a number.
+        // Zero also for what is not a number. Where nothing would change, and in what is no island, no scale is needed.
         const double best = sums.curvature > 0 ? -sums.slope / sums.curvature : 0;
-        if (best > 0) sums.scale = best > kNearlyOne ? 1.0f : static_cast<float>(best);
+        sums.scale = best > kNearlyOne || sums.curvature == 0 ? 1.0f : static_cast<float>(std::max(best, 0.0));
+        scales |= sums.scale < 1;
     }
     island = islandOf;
     VisitInLanes(bodies, [&](const Indices& index, int count) {
-        Lanes scale(0.0f);
-        for (int k = 0; k < count; ++k, ++island) {
-            scale.Set(k, islands[*island].scale);
-            scales |= islands[*island].scale < 1 && islands[*island].curvature != 0;
-        }
+        Lanes scale(1.0f);
+        if (scales)
+            for (int k = 0; k < count; ++k) scale.Set(k, islands[island[k]].scale);
+        island += count;
         AddChanges(store, index, count, scale, starts);
     });
     return scales;

@@ -38,9 +38,8 @@ enum class Verb : uint8_t {
     AddWarmStart,
     ApplyWarmStart,  // serial
     ScaleImpulses,
-    // With gyroscopic torque (GyroscopicHalf):
-    FirstGyroscopic,
-    SecondGyroscopic,
+    Gyroscopic,      // of the end of the last substep and of the start of this one (GyroscopicHalves)
+    LastGyroscopic,  // of the end of the step
     FirstVelocities,
     Velocities,
     Impacts,  // velocity iterations in which contacts leave overlaps (Effort::impactIterations)
@@ -79,7 +78,7 @@ FULCRUM_FORCE_INLINE void Prefetch(const ContactBatch<kLanes, false>& batch, Rea
 template <class Batch>
 FULCRUM_FORCE_INLINE void Prefetch(const Batch&, Reads) {}
 
-bool IsGyroscopic(Verb verb) { return verb == Verb::FirstGyroscopic || verb == Verb::SecondGyroscopic; }
+bool IsGyroscopic(Verb verb) { return verb == Verb::Gyroscopic || verb == Verb::LastGyroscopic; }
 
 bool IsOverBodies(Verb verb) {
     return verb == Verb::IntegrateVelocities || verb == Verb::IntegratePoses || IsGyroscopic(verb);
@@ -191,8 +190,9 @@ private:
         } else if (IsSerial(phase.verb)) {
             RunIterated(phase.verb, phase.substep);
         } else if (phase.color == group_.colorsEnd - group_.colorsBegin) {
+            const JointSolveSettings joints = JointSettingsAt(phase.substep);
             ForEachOverflowList(layout_, [&](auto& batches) {
-                for (auto& batch : batches) RunBatch(phase.verb, phase.substep, batch, findings);
+                for (auto& batch : batches) RunBatch(phase.verb, phase.substep, joints, batch, findings);
             });
         } else {
             const ColorBatches& color = layout_.colors[group_.colorsBegin + phase.color];
@@ -214,9 +214,10 @@ private:
             IntegrateVelocities(bodies_, moved_.joints, bodies, h_, start, findings);
             if (starts_ && (substep == 0 || !addsAtEnd_)) ClearStarts(bodies);
         } else if (IsGyroscopic(verb)) {
-            const bool isFirst = verb == Verb::FirstGyroscopic;
-            AddGyroscopicTorque(bodies_, moved_.joints, bodies, h_,
-                                isFirst ? GyroscopicHalf::First : GyroscopicHalf::Second, starts_);
+            const GyroscopicHalves halves = verb == Verb::LastGyroscopic ? GyroscopicHalves::Second
+                                            : substep == 0               ? GyroscopicHalves::First
+                                                                         : GyroscopicHalves::Both;
+            AddGyroscopicTorque(bodies_, moved_.joints, bodies, h_, halves, starts_);
         }
     }
 
@@ -263,13 +264,14 @@ private:
                     WorkerFindings& findings) {
         uint32_t first = 0;  // index of the kind's first batch within the color
         const Reads reads = ReadsOf(phase.verb);
+        const JointSolveSettings joints = JointSettingsAt(phase.substep);
         ForEachBatchList(layout_, [&](auto& list, BatchKind kind) {
             const BatchRange& range = color.of[kind];
             const uint32_t last = first + range.Count();
             for (uint32_t i = std::max(begin, first); i < std::min(end, last); ++i) {
                 const uint32_t batch = range.begin + i - first;
                 if (i + 1 < last) Prefetch(list.batches[batch + 1], reads);
-                RunBatch(phase.verb, phase.substep, list.batches[batch], findings);
+                RunBatch(phase.verb, phase.substep, joints, list.batches[batch], findings);
             }
             first = last;
         });
@@ -287,7 +289,8 @@ private:
     }
 
     template <int N, bool kFixedB>
-    void RunBatch(Verb verb, uint8_t substep, ContactBatch<N, kFixedB>& batch, WorkerFindings& findings) {
+    void RunBatch(Verb verb, uint8_t substep, const JointSolveSettings&, ContactBatch<N, kFixedB>& batch,
+                  WorkerFindings& findings) {
         BodyState* states = bodies_.states.data();
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
@@ -344,9 +347,8 @@ private:
 
     // For joints, ball joints or others.
     template <class Batch>
-    void RunBatch(Verb verb, uint8_t substep, Batch& batch, WorkerFindings&) {
+    void RunBatch(Verb verb, uint8_t substep, const JointSolveSettings& settings, Batch& batch, WorkerFindings&) {
         BodyState* states = bodies_.states.data();
-        const JointSolveSettings settings = JointSettingsAt(substep);
         switch (verb) {
             case Verb::AddWarmStart:
                 if (substep == 0 || !addsAtEnd_) AddWarmStart(batch, states, starts_, settings);
@@ -358,16 +360,21 @@ private:
             case Verb::Relax:
                 if (!isSolved_) SolveJointVelocities(batch, states, settings);
                 break;
-            case Verb::Correction:
-            case Verb::CorrectPoses: {
-                JointSolveSettings atEnd = settings;
-                atEnd.continues = true;
-                const bool adds = addsAtEnd_ && verb == Verb::CorrectPoses && substep + 1 < effort_.solver.substeps;
-                CorrectJoints(batch, bodies_.ForSolver(), adds ? starts_ : nullptr, atEnd);
+            case Verb::CorrectPoses:
+                CorrectJoints(batch, bodies_.ForSolver(), NextStarts(substep), AtEnd(settings));
                 break;
-            }
+            case Verb::Correction: CorrectJoints(batch, bodies_.ForSolver(), nullptr, AtEnd(settings)); break;
             default: break;
         }
+    }
+
+    // At the end of a substep; the warm start of the next one, where joints add it then.
+    static JointSolveSettings AtEnd(JointSolveSettings settings) {
+        settings.continues = true;
+        return settings;
+    }
+    WarmStart* NextStarts(uint8_t substep) const {
+        return addsAtEnd_ && substep + 1 < effort_.solver.substeps ? starts_ : nullptr;
     }
 
     // Whether contacts of the batch may be found again. Surfaces, all of whose manifolds are if one is outdated, are
@@ -452,8 +459,8 @@ struct JointVerbs {
 // The solver loop as the sequence of its verbs. notes: for contact events.
 std::span<const Verb> LoopOf(const Effort& effort, const JointVerbs& joints, bool notes, ScratchArena& scratch) {
     const SolverSettings& settings = effort.solver;
-    const size_t longest = static_cast<size_t>(settings.velocityIterations + 2 * settings.positionIterations + 23);
-    std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps));
+    const size_t longest = static_cast<size_t>(settings.velocityIterations + 2 * settings.positionIterations + 22);
+    std::span<Verb> verbs = scratch.Allocate<Verb>(longest * static_cast<size_t>(settings.substeps) + 1);
     size_t n = 0;
     for (int substep = 0; substep < settings.substeps; ++substep) {
         if (substep > 0)
@@ -462,7 +469,7 @@ std::span<const Verb> LoopOf(const Effort& effort, const JointVerbs& joints, boo
         verbs[n++] = Verb::IntegrateVelocities;
         if (joints.any) {
             verbs[n++] = Verb::AddWarmStart;
-            if (joints.gyroscopic) verbs[n++] = Verb::FirstGyroscopic;
+            if (joints.gyroscopic) verbs[n++] = Verb::Gyroscopic;
             verbs[n++] = Verb::ApplyWarmStart;
             verbs[n++] = Verb::ScaleImpulses;
         } else if (substep == 0) {
@@ -485,9 +492,9 @@ std::span<const Verb> LoopOf(const Effort& effort, const JointVerbs& joints, boo
         if (joints.any && (!corrects || settings.positionIterations == 0)) {
             verbs[n++] = Verb::CorrectPoses;
         }
-        if (joints.gyroscopic) verbs[n++] = Verb::SecondGyroscopic;
         if (notes) verbs[n++] = Verb::NoteImpulses;
     }
+    if (joints.gyroscopic) verbs[n++] = Verb::LastGyroscopic;
     return verbs.first(n);
 }
 
