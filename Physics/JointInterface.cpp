@@ -52,9 +52,7 @@ std::pair<Frame, Frame> FramesOf(const WorldState& world, const JointSettings& s
         if (!b.normal) {
             Vector3 normal = Rotate(pose.rotation, Vector3(0, 1, 0));
             if (s.space == JointSpace::Body) normal = InverseRotate(world.bodies.RotationOf(s.bodyB.index), normal);
-            const Vector3 axis = Normalized(b.axis);
-            const Vector3 flat = normal - axis * Dot(axis, normal);
-            if (LengthSquared(flat) > 1e-6f) b.normal = Normalized(flat);
+            SetNormalNear(b, normal);
         }
         return {a, FrameOf(world, s.bodyB.index, b, s.space)};
     }

@@ -34,11 +34,15 @@ inline Quaternion RotationFromColumns(const Matrix3& m) {
 
 }  // namespace detail
 
-// The rotation that maps the x and y axes to the given unit vectors, which must not be parallel; the second is
-// orthogonalized against the first.
-inline Quaternion RotationFromAxesXY(const Vector3& axisX, const Vector3& axisY) {
-    const Vector3 z = Normalized(Cross(axisX, axisY));
+// The rotation that maps the x and z axes to the given directions, which must be perpendicular. axisX: unit.
+inline Quaternion RotationFromAxesXZ(const Vector3& axisX, const Vector3& axisZ) {
+    const Vector3 z = Normalized(axisZ);
     return detail::RotationFromColumns({axisX, Cross(z, axisX), z});
+}
+// The same for the x and y axes, unit vectors which must not be parallel; the second is orthogonalized against the
+// first.
+inline Quaternion RotationFromAxesXY(const Vector3& axisX, const Vector3& axisY) {
+    return RotationFromAxesXZ(axisX, Vector3(Cross(axisX, axisY)));
 }
 
 // q0^-1 for which frames f1 and f2, each in its body's own space, point the same way in the world: q1 f1 = q2 f2.

@@ -150,6 +150,12 @@ Quaternion RotationOf(const JointAnchor& anchor) {
     return RotationFromAxesXY(axis, anchor.normal ? *anchor.normal : Perpendicular(axis));
 }
 
+void SetNormalNear(JointAnchor& anchor, const Vector3& wanted) {
+    const Vector3 axis = Normalized(anchor.axis);
+    const Vector3 flat = wanted - axis * Dot(axis, wanted);
+    if (LengthSquared(flat) > 1e-6f) anchor.normal = Normalized(flat);
+}
+
 MaybeError CheckCommon(const JointSettings& s) {
     return FirstOf(CheckEnum("space", s.space, JointSpace::Body), CheckAnchor("anchorA", s.anchorA),
                    s.anchorB ? CheckAnchor("anchorB", *s.anchorB) : std::nullopt,

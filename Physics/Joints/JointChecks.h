@@ -41,6 +41,9 @@ Result<std::unique_ptr<JointType>> MakeCheckedType(const Settings& settings,
 
 // Rotation of an anchor's frame, x along its axis, in the space in which it is given.
 Quaternion RotationOf(const JointAnchor& anchor);
+// Sets the normal to the direction nearest to `wanted` that is perpendicular to the axis; not where it is along the
+// axis.
+void SetNormalNear(JointAnchor& anchor, const Vector3& wanted);
 
 // Checks that x is within `low`..`high`, which may be infinite.
 MaybeError CheckBetween(const FieldName& field, double x, double low, double high);

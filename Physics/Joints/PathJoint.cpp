@@ -107,7 +107,7 @@ void PathJoint::CollectRows(const JointPose& pose, JointRowList& rows) {
 
 void PathJoint::AddRotationRows(const JointPose& pose, const PathSample& at, const JointRow& along,
                                 JointRowList& rows) const {
-    const Quaternion ofPath = RotationFromAxesXY(at.tangent, at.normal);
+    const Quaternion ofPath = RotationFromAxesXZ(at.tangent, at.binormal);
     const Quaternion ofB = ofPath.Conjugate() * (pose.frameA.Conjugate() * pose.frameB);
     // Rotation error of B in the path's frame. If free about the tangent: the rotation between the x axes.
     Vector3 error;

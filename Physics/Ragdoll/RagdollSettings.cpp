@@ -1,6 +1,5 @@
 #include <Fulcrum/Physics/Ragdoll/RagdollSettings.h>
 
-#include <Fulcrum/Constraints/Parts/RotationEulerPart.h>
 #include <Fulcrum/Math/FloatEnvironment.h>
 #include <Fulcrum/Physics/Joints/JointChecks.h>
 
@@ -76,12 +75,9 @@ RagdollJointFrames JointFramesOf(const RagdollSettings& settings, size_t part) {
     if (joint.anchorB) {
         JointAnchor anchor = *joint.anchorB;
         if (!anchor.normal) {
-            // As close to frame A's normal as the axis allows.
-            const Vector3 axis = Normalized(anchor.axis);
             Vector3 normal = Rotate(onParent.rotation, Vector3(0, 1, 0));
             if (!isWorld) normal = InverseRotate(childPose.rotation, normal);
-            const Vector3 flat = normal - axis * Dot(axis, normal);
-            if (LengthSquared(flat) > 1e-6f) anchor.normal = Normalized(flat);
+            SetNormalNear(anchor, normal);
         }
         onPart = inRagdoll(anchor, childPose);
     }

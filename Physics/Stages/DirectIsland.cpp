@@ -272,8 +272,9 @@ private:
     void ReadRows(JointBatch<kLanes>& batch, int lane) {
         float own[JointRowList::kMaxRows];
         for (uint32_t i = 0; i < batch.rowCount; ++i) own[i] = Next();
-        // Likewise of rows that are locks, see RowImpulses.
-        for (uint32_t i = batch.lockRowCount > 0 ? batch.rowCount : 0; i-- > 0;)
+        // Likewise of rows that are locks, see RowImpulses: a row's own impulse is its total less what those after it
+        // have given it, by their totals.
+        for (uint32_t i = 0; i < (batch.lockRowCount > 0 ? batch.rowCount : 0); ++i)
             for (uint32_t k = 0; k < batch.lockRowCount; ++k)
                 if (k != i && batch.rows[k].isLock[lane] > 0.5f) own[k] -= batch.rows[i].lockRows[k][lane] * own[i];
         for (int k = 0; k < 3; ++k) {

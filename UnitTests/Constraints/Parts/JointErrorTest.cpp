@@ -156,13 +156,14 @@ TEST(JointError, InitialOrientationFromAxesMakesThemMeet) {
         const Matrix3 m1 = ToMatrix(frame1), m2 = ToMatrix(frame2);
         const Quaternion expected = frame2 * frame1.Conjugate();
         const Quaternion xy = InverseInitialOrientation(RotationFromAxesXY(m1.x, m1.y), RotationFromAxesXY(m2.x, m2.y));
-        const auto alike = [&](const Quaternion& q) {
-            return std::fabs(q.x * expected.x + q.y * expected.y + q.z * expected.z + q.w * expected.w);
-        };
-        EXPECT_NEAR(alike(xy), 1.0f, 1e-6f);
-        // Bodies turned so that the frames meet have no error.
+        const Quaternion xz = InverseInitialOrientation(RotationFromAxesXZ(m1.x, m1.z), RotationFromAxesXZ(m2.x, m2.z));
         const Quaternion q1 = AnyRotation(random), q2 = q1 * frame1 * frame2.Conjugate();
-        EXPECT_LT(Length(RotationError<float>(q1, q2, xy)), 3e-6f);
+        for (const Quaternion& q : {xy, xz}) {
+            EXPECT_NEAR(std::fabs(q.x * expected.x + q.y * expected.y + q.z * expected.z + q.w * expected.w), 1.0f,
+                        1e-6f);
+            // Bodies turned so that the frames meet have no error.
+            EXPECT_LT(Length(RotationError<float>(q1, q2, q)), 3e-6f);
+        }
         EXPECT_LT(Length(RotationError<float>(q1, q2, InverseInitialOrientation(q1.Conjugate(), q2.Conjugate()))),
                   1e-6f);
     }

@@ -1,8 +1,9 @@
 // The parts (Constraints/Parts) at work in joints, at the default settings: steps of two bodies whose motion a joint
-// locks in part, against their closed forms.
+// locks in part, against their closed forms. Iterated, and solved directly as under a load.
 #include <Fulcrum/UnitTests/Physics/Joints/JointTools.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
@@ -43,9 +44,10 @@ public:
     const Position anchor{0.5, -0.2, 0.3};
     const Quaternion frame = RotationAbout({0.36f, 0.48f, 0.8f}, 0.7);
 
-    explicit TwoBodies(double speed = 0, const Vector3& gravity = {0, 0, 0}) {
+    explicit TwoBodies(double speed = 0, const Vector3& gravity = {0, 0, 0}, bool isDirect = false) {
         SystemSettings settings = world.System().Settings();
         settings.gravity = gravity;
+        if (isDirect) settings.exactJointLoad = 0.1f;
         EXPECT_TRUE(world.System().SetSettings(settings));
         const auto s = static_cast<float>(speed);
         a = Add({0, 0, 0}, RotationAbout({0.6f, 0, 0.8f}, 0.5), 2, {0.3f, 0.5f, 0.7f},
@@ -93,12 +95,14 @@ public:
     }
 
     // The Jacobian of B's motion against A along the frame's locked axes, with impulses that act at the anchor.
-    Rows JacobianOf(const Locked& locked) const {
+    Rows JacobianOf(const Locked& locked) const { return JacobianAt(anchor, anchor, locked); }
+    // The same with impulses that act at these points of A and of B.
+    Rows JacobianAt(const Position& pointA, const Position& pointB, const Locked& locked) const {
         const Eigen::Matrix3d axes = Columns(frame);
         Rows all = Rows::Zero(6, 12), rows(0, 12);
         for (int i = 0; i < 2; ++i) {
             const double sign = i == 0 ? -1 : 1;
-            const Eigen::Vector3d arm = ToDense(anchor - start_[i].position);
+            const Eigen::Vector3d arm = ToDense((i == 0 ? pointA : pointB) - start_[i].position);
             all.block<3, 3>(0, 6 * i) = sign * axes.transpose();
             all.block<3, 3>(0, 6 * i + 3) = -sign * axes.transpose() * CrossMatrix(arm);
             all.block<3, 3>(3, 6 * i + 3) = sign * axes.transpose();
@@ -144,6 +148,12 @@ struct Kind {
     std::string name;
     Locked locked;
     std::function<JointId(TestWorld&, const JointSettings&)> join;
+
+    // Whether rows lock an axis, not blocks alone: a single axis of translation or of rotation, or a path.
+    bool HasRows() const {
+        return locked[0] + locked[1] + locked[2] == 1 || locked[3] + locked[4] + locked[5] == 1 ||
+               name.starts_with("path");
+    }
 };
 
 Kind SixDofOf(const Locked& locked) {
@@ -187,43 +197,98 @@ std::vector<Kind> AllKinds() {
                          settings.twist = Limited(-1, 1);  // out of reach
                          return Join(world, settings);
                      }});
+    // Rows that are locks. B begins at the middle of a straight path.
+    const auto addPath = [&](const char* name, const Locked& locked, PathRotation rotation) {
+        kinds.push_back({name, locked, [rotation](TestWorld& world, const JointSettings& s) {
+                             PathJointSettings settings = Of<PathJointSettings>(s);
+                             settings.rotation = rotation;
+                             return Join(world, settings);
+                         }});
+    };
+    addPath("path", {0, 1, 1, 0, 0, 0}, PathRotation::Free);
+    addPath("path, tangent", {0, 1, 1, 0, 1, 1}, PathRotation::Tangent);
+    addPath("path, tangent and normal", {0, 1, 1, 1, 1, 1}, PathRotation::TangentAndNormal);
+    addPath("path, constant", {0, 1, 1, 1, 1, 1}, PathRotation::Constant);
     return kinds;
 }
 
 // One step takes from the velocities what a joint locks, by the least impulses that do so: the bodies' momentum is
-// kept, and what is free stays as it was. Of numbers of order 0.1: rounding, and the turn of 1e-4 rad within the step.
+// kept, and what is free stays as it was; a single pass does it, so that bodies move that way from the first substep
+// on. Of numbers of order 0.1: rounding, and the turn of 1e-4 rad within the step.
 TEST(PartsAtWork, AStepIsTheProjectionOntoWhatAJointAllows) {
-    for (const Kind& kind : AllKinds()) {
-        TwoBodies pair(0.1);
-        kind.join(pair.world, pair.Between());
-        const Motion before = pair.Velocity();
-        const Rows j = pair.JacobianOf(kind.locked);
-        pair.world.Step(TwoBodies::kShort);
-        const Motion expected = before + pair.LeastChange(j, j * before);
-        EXPECT_LT((pair.Velocity() - expected).norm(), 3e-5) << kind.name;
-    }
+    for (const bool isDirect : {false, true})
+        for (const Kind& kind : AllKinds()) {
+            TwoBodies pair(0.1, {0, 0, 0}, isDirect);
+            kind.join(pair.world, pair.Between());
+            const Motion before = pair.Velocity();
+            const Rows j = pair.JacobianOf(kind.locked);
+            pair.world.Step(TwoBodies::kShort);
+            const Motion expected = before + pair.LeastChange(j, j * before);
+            EXPECT_LT((pair.Velocity() - expected).norm(), 3e-5) << kind.name << " " << isDirect;
+            EXPECT_LT((pair.Moved() - TwoBodies::kShort * expected).norm(), 1e-6) << kind.name << " " << isDirect;
+        }
+}
+
+// Where the anchors are apart, impulses act halfway between them, those of lines at the anchor of B: on both bodies at
+// the same point, which keeps the angular momentum. But no farther out than the longer arm.
+TEST(PartsAtWork, ImpulsesActBetweenTheAnchors) {
+    for (const double gap : {0.1, 5.0})
+        for (const Kind& kind : AllKinds()) {
+            const bool isPoint = kind.locked[0] && kind.locked[1] && kind.locked[2];
+            const bool isLine = !isPoint && kind.locked[0] + kind.locked[1] + kind.locked[2] == 2;
+            if (!isPoint && (!isLine || kind.name.starts_with("path"))) continue;
+            TwoBodies pair(0.1);
+            SystemSettings settings = pair.world.System().Settings();
+            settings.jointPushSpeed = 1e-6f;  // no correction
+            ASSERT_TRUE(pair.world.System().SetSettings(settings));
+            JointSettings apart = pair.Apart(Vector3(0.6f, 0.48f, -0.64f) * static_cast<float>(gap), {0, 0, 0});
+            kind.join(pair.world, apart);
+            const Position pointB = apart.anchorB->point;
+            Eigen::Vector3d across = ToDense(pointB - pair.anchor);
+            if (isLine)
+                for (int k = 0; k < 3; ++k)
+                    if (!kind.locked[static_cast<size_t>(k)]) {
+                        const Eigen::Vector3d free = Columns(pair.frame).col(k);
+                        across -= free * free.dot(across);
+                    }
+            const Position onLine = pointB - Position(across.x(), across.y(), across.z());
+            const double arm =
+                std::max(pair.Arm(pair.a, isLine ? onLine : pair.anchor).norm(), pair.Arm(pair.b, pointB).norm());
+            across *= std::min(1.0, arm / across.norm());
+            const Position between(across.x(), across.y(), across.z());
+            const Rows j = isLine ? pair.JacobianAt(onLine + between, pointB, kind.locked)
+                                  : pair.JacobianAt(pair.anchor + between * 0.5, pointB - between * 0.5, kind.locked);
+            const Motion before = pair.Velocity();
+            pair.world.Step(TwoBodies::kShort);
+            const Motion expected = before + pair.LeastChange(j, j * before);
+            EXPECT_LT((pair.Velocity() - expected).norm(), 3e-5 * (1 + gap)) << kind.name << " " << gap;
+        }
 }
 
 // The position pass corrects a fifth of the error in each of four substeps, by the least motion that does so, and
 // leaves no velocity. To first order in errors of a millimeter and of a milliradian.
 TEST(PartsAtWork, ErrorsCloseByAFifthInASubstep) {
-    for (const Kind& kind : AllKinds()) {
-        TwoBodies pair;
-        const Vector3 way(1e-3f, -0.7e-3f, 0.5e-3f), turn(-0.6e-3f, 0.8e-3f, 1.1e-3f);
-        kind.join(pair.world, pair.Apart(way, turn));
-        const SolverSettings& solver = pair.world.System().Settings().solver;
-        const double closed = 1 - std::pow(1 - double(solver.baumgarte), solver.substeps * solver.positionIterations);
-        Eigen::VectorXd error(0);
-        for (int k = 0; k < 6; ++k) {
-            if (!kind.locked[static_cast<size_t>(k)]) continue;
-            error.conservativeResize(error.size() + 1);
-            error[error.size() - 1] = closed * double(k < 3 ? way[k] : turn[k - 3]);
+    for (const bool isDirect : {false, true})
+        for (const Kind& kind : AllKinds()) {
+            // A direct solution corrects blocks alone: rows beside them are corrected before, and moved by it.
+            if (isDirect && kind.HasRows()) continue;
+            TwoBodies pair(0, {0, 0, 0}, isDirect);
+            const Vector3 way(1e-3f, -0.7e-3f, 0.5e-3f), turn(-0.6e-3f, 0.8e-3f, 1.1e-3f);
+            kind.join(pair.world, pair.Apart(way, turn));
+            const SolverSettings& solver = pair.world.System().Settings().solver;
+            const double closed =
+                1 - std::pow(1 - double(solver.baumgarte), solver.substeps * solver.positionIterations);
+            Eigen::VectorXd error(0);
+            for (int k = 0; k < 6; ++k) {
+                if (!kind.locked[static_cast<size_t>(k)]) continue;
+                error.conservativeResize(error.size() + 1);
+                error[error.size() - 1] = closed * double(k < 3 ? way[k] : turn[k - 3]);
+            }
+            pair.world.Step();
+            const Motion expected = pair.LeastChange(pair.JacobianOf(kind.locked), error);
+            EXPECT_LT((pair.Moved() - expected).norm(), 0.01 * expected.norm()) << kind.name << " " << isDirect;
+            EXPECT_LT(pair.Velocity().norm(), 1e-6) << kind.name << " " << isDirect;
         }
-        pair.world.Step();
-        const Motion expected = pair.LeastChange(pair.JacobianOf(kind.locked), error);
-        EXPECT_LT((pair.Moved() - expected).norm(), 0.01 * expected.norm()) << kind.name;
-        EXPECT_LT(pair.Velocity().norm(), 1e-6) << kind.name;
-    }
 }
 
 // Rods, gears, racks and ropes: one row that acts on both bodies at its own points.
@@ -283,6 +348,18 @@ TEST(PartsAtWork, AStepOfASingleRowIsItsProjection) {
     }
 }
 
+// The force and the torque about the anchor that a joint reads, in the step after this motion, are those that changed
+// the motion of B.
+void ExpectRead(TwoBodies& pair, JointId joint, const Motion& before) {
+    const Eigen::Matrix<double, 6, 6> mass = pair.InverseMass().bottomRightCorner<6, 6>().inverse();
+    const Eigen::Matrix<double, 6, 1> impulse = mass * (pair.Velocity() - before).tail<6>();
+    const Eigen::Vector3d force = impulse.head<3>() / TwoBodies::kShort,
+                          torque = impulse.tail<3>() / TwoBodies::kShort -
+                                   CrossMatrix(pair.Arm(pair.b, pair.anchor)) * force;
+    EXPECT_LT((ToDense(JointsOf(pair.world).GetForce(joint)) - force).norm(), 2e-3 * force.norm());
+    EXPECT_LT((ToDense(JointsOf(pair.world).GetTorque(joint)) - torque).norm(), 2e-3 * (force.norm() + torque.norm()));
+}
+
 // The motor's speed is met by the least impulses that the locks let it have; a motor too weak for that adds what its
 // force does in the step, and the locks take no work.
 TEST(PartsAtWork, MotorsActThroughTheLocks) {
@@ -303,13 +380,14 @@ TEST(PartsAtWork, MotorsActThroughTheLocks) {
         };
         {
             TwoBodies pair(0.1);
-            join(pair, SpeedMotor(0.3));
+            const JointId joint = join(pair, SpeedMotor(0.3));
             const Motion before = pair.Velocity();
             const Rows j = pair.JacobianOf({1, 1, 1, 1, 1, 1});
             Eigen::VectorXd wanted = j * before;
             wanted[turns ? 3 : 0] -= 0.3;
             pair.world.Step(TwoBodies::kShort);
             EXPECT_LT((pair.Velocity() - before - pair.LeastChange(j, wanted)).norm(), 5e-5) << turns;
+            ExpectRead(pair, joint, before);
         }
         {
             TwoBodies pair;
@@ -322,6 +400,7 @@ TEST(PartsAtWork, MotorsActThroughTheLocks) {
             EXPECT_NEAR(
                 JointsOf(pair.world).GetAxisForces(joint, turns ? JointAxis::AngularX : JointAxis::LinearX).motor,
                 force, 1e-4 * force);
+            ExpectRead(pair, joint, Motion::Zero());
         }
     }
 }
@@ -329,25 +408,30 @@ TEST(PartsAtWork, MotorsActThroughTheLocks) {
 // What a joint to something static holds up of a body reads as its force and as its torque about the anchor, from the
 // first step on, and in a step of another length.
 TEST(PartsAtWork, AJointReadsWhatItHoldsUp) {
-    for (const Kind& kind : AllKinds()) {
-        TwoBodies pair(0, {3, -8, 4});
-        ASSERT_TRUE(pair.world.Bodies().SetMotionType(pair.a, MotionType::Static));
-        const JointId joint = kind.join(pair.world, pair.Between());
-        const Eigen::Matrix<double, Eigen::Dynamic, 6> j = pair.JacobianOf(kind.locked).rightCols<6>();
-        const Eigen::Matrix<double, 6, 6> inverseMass = pair.InverseMass().bottomRightCorner<6, 6>();
-        Eigen::Matrix<double, 6, 1> falls, acts = Eigen::Matrix<double, 6, 1>::Zero();
-        falls << 3, -8, 4, 0, 0, 0;
-        const Eigen::VectorXd impulses = (j * inverseMass * j.transpose()).ldlt().solve(-(j * falls));
-        for (int k = 0, row = 0; k < 6; ++k)
-            if (kind.locked[static_cast<size_t>(k)])
-                acts.segment<3>(k < 3 ? 0 : 3) += Columns(pair.frame).col(k % 3) * impulses[row++];
-        for (const double dt : {TwoBodies::kShort, 0.5 * TwoBodies::kShort}) {
-            pair.world.Step(dt);
-            Eigen::Matrix<double, 6, 1> read;
-            read << ToDense(JointsOf(pair.world).GetForce(joint)), ToDense(JointsOf(pair.world).GetTorque(joint));
-            EXPECT_LE((read - acts).norm(), 1e-3 * acts.norm()) << kind.name << " " << dt;
+    for (const bool isDirect : {false, true})
+        for (const Kind& kind : AllKinds()) {
+            TwoBodies pair(0, {3, -8, 4}, isDirect);
+            ASSERT_TRUE(pair.world.Bodies().SetMotionType(pair.a, MotionType::Static));
+            const JointId joint = kind.join(pair.world, pair.Between());
+            const Eigen::Matrix<double, Eigen::Dynamic, 6> j = pair.JacobianOf(kind.locked).rightCols<6>();
+            const Eigen::Matrix<double, 6, 6> inverseMass = pair.InverseMass().bottomRightCorner<6, 6>();
+            Eigen::Matrix<double, 6, 1> falls, acts = Eigen::Matrix<double, 6, 1>::Zero();
+            falls << 3, -8, 4, 0, 0, 0;
+            const Eigen::VectorXd impulses = (j * inverseMass * j.transpose()).ldlt().solve(-(j * falls));
+            for (int k = 0, row = 0; k < 6; ++k)
+                if (kind.locked[static_cast<size_t>(k)])
+                    acts.segment<3>(k < 3 ? 0 : 3) += Columns(pair.frame).col(k % 3) * impulses[row++];
+            for (const double dt : {TwoBodies::kShort, 0.5 * TwoBodies::kShort}) {
+                pair.world.Step(dt);
+                Eigen::Matrix<double, 6, 1> read;
+                read << ToDense(JointsOf(pair.world).GetForce(joint)), ToDense(JointsOf(pair.world).GetTorque(joint));
+                EXPECT_LE((read - acts).norm(), 1e-3 * acts.norm()) << kind.name << " " << dt << " " << isDirect;
+                if (kind.HasRows()) continue;
+                read << ToDense(JointsOf(pair.world).GetLockForce(joint)),
+                    ToDense(JointsOf(pair.world).GetLockTorque(joint));
+                EXPECT_LE((read - acts).norm(), 1e-3 * acts.norm()) << kind.name << " " << dt << " " << isDirect;
+            }
         }
-    }
 }
 
 }  // namespace

@@ -109,31 +109,39 @@ TEST(Top, AHeldGyroscopeStaysLevel) {
 // rest. It may lose some, and gains none.
 TEST(Top, ASpinningRodThatSwingsKeepsItsEnergy) {
     constexpr double kTilt = 1;  // rad
-    for (const float radius : {0.02f, 0.1f})
-        for (const double spin : {5.0, 20.0, 50.0, 100.0, 200.0}) {
-            TestWorld world(NoSleep());
-            const BodyId hook = AddHook(world);
-            const Position down(std::sin(kTilt), -std::cos(kTilt), 0);
-            const BodyId rod = world.Add({.shape = Cylinder::Create(0.5f, radius).Value(),
-                                          .position = down * 0.5,
-                                          .rotation = RotationAbout({0, 0, 1}, kTilt),
-                                          .angularVelocity = (down * spin).cast<float>(),
-                                          .mass = 1});
-            Join(world, PointJointSettings{Between(hook, rod, {0, 0, 0})});
-            const auto energy = [&] {
-                return world.Bodies().GetKineticEnergy(rod) +
-                       kGravity * (world.Bodies().GetCenterOfMass(rod).y() + 0.5);
-            };
-            const double start = energy();
-            double low = start, high = start;
-            for (int i = 0; i < 1200; ++i) {
-                world.Run(1.0 / 60);
-                low = std::min(low, energy());
-                high = std::max(high, energy());
+    for (const bool hasRows : {false, true})
+        for (const float radius : {0.02f, 0.1f})
+            for (const double spin : {5.0, 20.0, 50.0, 100.0, 200.0}) {
+                TestWorld world(NoSleep());
+                const BodyId hook = AddHook(world);
+                const Position down(std::sin(kTilt), -std::cos(kTilt), 0);
+                const BodyId rod = world.Add({.shape = Cylinder::Create(0.5f, radius).Value(),
+                                              .position = down * 0.5,
+                                              .rotation = RotationAbout({0, 0, 1}, kTilt),
+                                              .angularVelocity = (down * spin).cast<float>(),
+                                              .mass = 1});
+                const JointSettings between = Between(hook, rod, {0, 0, 0});
+                if (hasRows) {
+                    SwingTwistJointSettings settings = Of<SwingTwistJointSettings>(between);
+                    settings.twist.friction = 1e-9f;
+                    Join(world, settings);
+                } else {
+                    Join(world, PointJointSettings{between});
+                }
+                const auto energy = [&] {
+                    return world.Bodies().GetKineticEnergy(rod) +
+                           kGravity * (world.Bodies().GetCenterOfMass(rod).y() + 0.5);
+                };
+                const double start = energy();
+                double low = start, high = start;
+                for (int i = 0; i < 1200; ++i) {
+                    world.Run(1.0 / 60);
+                    low = std::min(low, energy());
+                    high = std::max(high, energy());
+                }
+                EXPECT_LT(high - start, 0.01 * start) << radius << " " << spin << " " << hasRows;
+                EXPECT_GT(low - start, (spin <= 100 ? -0.04 : -0.4) * start) << radius << " " << spin << " " << hasRows;
             }
-            EXPECT_LT(high - start, 0.01 * start) << radius << " " << spin;
-            EXPECT_GT(low - start, (spin <= 100 ? -0.04 : -0.4) * start) << radius << " " << spin;
-        }
 }
 
 // A disc on a hinge in any direction: rounding has no sign, however many substeps there are. Gyroscopic torque once
