@@ -237,8 +237,11 @@ Status JointInterface::ChangeControl(const WorldLock::Exclusive& alone, JointId 
     Joint& joint = world_.joints.joints[id.index];
     ReserveToWake(world_, joint);
     alone.Begin();
+    const bool wasDriven = IsDrivenAtStops(*control);
     *control = changed;
-    if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks)) world_.coloring.Invalidate();
+    if (joint.type->MaxRows() != joint.maxRows || !(joint.type->Locks() == joint.locks) ||
+        IsDrivenAtStops(changed) != wasDriven)  // HardMechanisms
+        world_.coloring.Invalidate();
     if (joint.type->MaxRows() == 0) ForgetRows(*joint.type);
     if (joint.enabled) WakeBodiesOf(world_, joint);
     return Done{};

@@ -206,8 +206,9 @@ struct SystemSettings {
     // separated. They keep none of that velocity.
     float depenetrationSpeed = 0.5f;
     // The joints of islands that carry more than this multiple of their own bodies' mass are solved directly; twice
-    // this if all masses are alike, as in an unloaded rope; so are closed loops where nothing touches, and long levers
-    // of which a joint has been torn a little (Docs/Joints.md). > 0, infinite: never.
+    // this if all masses are alike, as in an unloaded rope; so are closed loops where nothing touches, joints of which
+    // a motor drives one at its stops, and long levers of which a joint has been torn a little (Docs/Joints.md). > 0,
+    // infinite: never.
     float exactJointLoad = 10.0f;
     // m/s and rad/s, > 0, at most 1e6: largest correction speed of joints, in the poses.
     float jointPushSpeed = 20.0f;

@@ -36,15 +36,16 @@ bool IsLimited(const AngleRange& range) { return !range.IsLocked() && !range.IsF
 
 // The swing clamped so that y / w and z / w are within the pyramid's faces.
 Quaternion WithinPyramid(const Quaternion& swing, const SwingTwistLimits& limits) {
-    const auto within = [&](float x, const AngleRange& range) {
-        const float ratio = x / std::max(swing.w, 1e-6f);
+    const float y = swing.y / std::max(swing.w, 1e-6f), z = swing.z / std::max(swing.w, 1e-6f);
+    const auto within = [](float ratio, const AngleRange& range) {
         // The tangent of a quarter turn is infinite.
         constexpr float kNearHalfTurn = AngleRange::kHalfTurn - 1e-3f;
         const SineCosine<float> low = SinCos(0.5f * std::max(range.minimum, -kNearHalfTurn));
         const SineCosine<float> high = SinCos(0.5f * std::min(range.maximum, kNearHalfTurn));
         return std::clamp(ratio, low.sine / low.cosine, high.sine / high.cosine);
     };
-    return Normalized(Quaternion{0.0f, within(swing.y, limits.swingY), within(swing.z, limits.swingZ), 1.0f});
+    const Quaternion clamped{0.0f, within(y, limits.swingY), within(z, limits.swingZ), 1.0f};
+    return clamped.y == y && clamped.z == z ? swing : Normalized(clamped);
 }
 
 }  // namespace
@@ -79,6 +80,14 @@ SwingTwistLimits AngularControls::Limits() const {
     return {RangeOf(axes_[0]), RangeOf(axes_[1]), RangeOf(axes_[2]), shape_};
 }
 
+// Soft ones count as free.
+SwingTwistLimits AngularControls::HardLimits() const {
+    const auto range = [&](size_t axis) {
+        return IsHard(axes_[axis].limits.spring) ? RangeOf(axes_[axis]) : AngleRange{};
+    };
+    return {range(0), range(1), range(2), shape_};
+}
+
 uint32_t AngularControls::MaxRows() const {
     if (lock_ == AngularLock::All) return 0;
     if (lock_ == AngularLock::Axis) return MaxControlRows(axes_[freeAxis_]);
@@ -109,22 +118,55 @@ void AngularControls::SetTargetOrientation(const Quaternion& target) {
     }
 }
 
+// A swing beyond an ellipse or pyramid, moved to its edge; others as they are. phi: its rotation vector.
+Quaternion AngularControls::SwingWithin(const Quaternion& swing, const Vector3& phi,
+                                        const SwingTwistLimits& limits) const {
+    const AngleRange &y = limits.swingY, &z = limits.swingZ;
+    if (!IsLimited(y) || !IsLimited(z)) return swing;
+    if (shape_ == SwingShape::Pyramid) return WithinPyramid(swing, limits);
+    const float ofY = phi.y() / y.maximum, ofZ = phi.z() / z.maximum, squared = ofY * ofY + ofZ * ofZ;
+    return squared > 1.0f ? RotationFromVector(Vector3(phi * (1.0f / Sqrt(squared)))) : swing;
+}
+
 // The target positions as an orientation, clamped to the limits.
 Quaternion AngularControls::Target(const SwingTwistLimits& limits) const {
     const float twist = std::clamp(axes_[0].motor.targetPosition, limits.twist.minimum, limits.twist.maximum);
     Vector3 phi(0.0f, axes_[1].motor.targetPosition, axes_[2].motor.targetPosition);
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
-    const bool isBoth = IsLimited(y) && IsLimited(z);
-    if (!isBoth) {
+    if (!IsLimited(y) || !IsLimited(z)) {
         phi.y() = std::clamp(phi.y(), y.minimum, y.maximum);
         phi.z() = std::clamp(phi.z(), z.minimum, z.maximum);
-    } else if (shape_ == SwingShape::Ellipse) {
-        const float ofY = phi.y() / y.maximum, ofZ = phi.z() / z.maximum;
-        phi *= 1.0f / std::max(1.0f, Sqrt(ofY * ofY + ofZ * ofZ));
     }
-    Quaternion swing = RotationFromVector(phi);
-    if (isBoth && shape_ == SwingShape::Pyramid) swing = WithinPyramid(swing, limits);
-    return swing * RotationFromVector(Vector3(twist, 0.0f, 0.0f));
+    return SwingWithin(RotationFromVector(phi), phi, limits) * RotationFromVector(Vector3(twist, 0.0f, 0.0f));
+}
+
+// The target speeds, along the axes of B, so that within `time` they lead no farther than the limits are: to the
+// nearest orientation within from where they would lead without. So at an edge they slide along it, to its end in their
+// direction.
+Vector3 AngularControls::SpeedsWithin(const SwingTwist& turned, const Vector3& speeds, float time,
+                                      const SwingTwistLimits& limits) const {
+    constexpr float kQuarterTurn = 0.5f * AngleRange::kHalfTurn;  // farther away the nearest edge limits them
+    const Vector3 swing(0.0f, speeds.y(), speeds.z());
+    const float part = std::min(time, kQuarterTurn / std::max(Length(swing), 1e-6f));
+    const auto swingWithin = [&](const SwingTwist& r) {
+        return SwingWithin(r.swing, Vector3(0.0f, r.SwingY(), r.SwingZ()), limits);
+    };
+    const auto twistWithin = [&](float twist) {
+        const AngleRange& range = limits.twist;
+        return range.IsFree() ? twist : std::clamp(twist, range.minimum, range.maximum);
+    };
+    const auto withTwist = [](const Quaternion& of, float twist) {
+        return of * RotationFromVector(Vector3(twist, 0.0f, 0.0f));
+    };
+    // What is beyond a limit moves as at the limit: it is not for motors to correct that.
+    const float center = limits.twist.Center();
+    const Quaternion from = withTwist(swingWithin(turned), twistWithin(detail::Unwrapped(turned.twist, center)));
+    const SwingTwist to = Decompose(from * RotationFromVector(Vector3(swing * part)));
+    const float twist = detail::Unwrapped(to.twist, center), turn = speeds.x() * time, end = twistWithin(twist + turn);
+    const Quaternion endSwing = swingWithin(to);
+    if (end == twist + turn && endSwing.y == to.swing.y && endSwing.z == to.swing.z) return speeds;
+    const Vector3 way = RotationVectorOf<float>(from.Conjugate() * withTwist(endSwing, twist));
+    return Vector3(way.x() + (end - twist), way.y(), way.z()) * (1.0f / time);
 }
 
 AngularControls::Motion AngularControls::MotionOf(const JointPose& pose, const SwingTwistLimits& limits) const {
@@ -168,7 +210,8 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
     const AngleRange &y = limits.swingY, &z = limits.swingZ;
     const SwingTwist turned = Decompose(pose.frameA.Conjugate() * pose.frameB);
     const float least = std::min({y.maximum, -y.minimum, z.maximum, -z.minimum});
-    if (!IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach) AddSwingLimits(list, turned, limits);
+    if (pose.isDirect || !IsLimited(y) || !IsLimited(z) || least - turned.alpha <= reach)
+        AddSwingLimits(list, turned, limits);
     // If the x axes are nearly opposite, twist is ill-defined, and its limit may work against the swing limit that
     // reduces the swing.
     constexpr float kOpposite = 0.3f, kFarOut = 0.5f;  // cos(alpha / 2); rad
@@ -182,7 +225,7 @@ void AngularControls::CollectRows(const JointPose& pose, uint32_t firstSlot, Joi
         limit.axis = Rotate(pose.frameA, limit.axis);
         limit.pole = Rotate(pose.frameA, limit.pole);
     }
-    AddMotorRows(pose, motion, list, firstSlot, rows);
+    AddMotorRows(pose, motion, turned, list, firstSlot, rows);
     AddLimitRows(pose, motion, list, firstSlot, rows);
 }
 
@@ -213,20 +256,22 @@ void AngularControls::AddLimitRows(const JointPose& pose, const Motion& motion, 
             const float way = motion.toTarget[k] * Dot(limit.axis, AxisOf(motion.axes, k));
             reach += SpringTravel(axes_[static_cast<size_t>(k)].motor.spring, std::max(0.0f, way), pose.dt);
         }
-        if (limit.error > reach) continue;
+        if (limit.error > reach && !pose.isDirect) continue;
         AddLimitRow(spring, row, 1.0f, limit.error, firstSlot + SlotOfLimit(limit.slot), rows);
     }
 }
 
 // As in AddControlRows: the target speed is clamped to what hard limits allow, and a motor well beyond a limit does not
 // hold the axis there.
-void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list,
-                                   uint32_t firstSlot, JointRowList& rows) const {
+void AngularControls::AddMotorRows(const JointPose& pose, const Motion& motion, const SwingTwist& turned,
+                                   const RotationLimitList& list, uint32_t firstSlot, JointRowList& rows) const {
+    const float time = pose.dt + pose.substepDt;
     Vector3 allowed = motion.motorVelocity;
+    if (list.count > 0 && !motion.motorSpeed.isZero(0))
+        allowed = motion.axes * SpeedsWithin(turned, motion.motorSpeed, time, HardLimits());
     for (const RotationLimit& limit : list) {
         if (limit.isLocked || !IsHard(axes_[AxisOfLimit(limit.slot)].limits.spring)) continue;
-        const float slowest = -std::max(limit.error, -kLimitSlop) / (pose.dt + pose.substepDt),
-                    speed = Dot(limit.axis, allowed);
+        const float slowest = -std::max(limit.error, -kLimitSlop) / time, speed = Dot(limit.axis, allowed);
         if (speed < slowest) allowed += limit.axis * (slowest - speed);
     }
     for (int k = 0; k < 3; ++k) {

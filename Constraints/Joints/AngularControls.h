@@ -48,12 +48,16 @@ public:
 private:
     struct Motion;
     SwingTwistLimits Limits() const;
+    SwingTwistLimits HardLimits() const;
+    Quaternion SwingWithin(const Quaternion& swing, const Vector3& phi, const SwingTwistLimits& limits) const;
+    Vector3 SpeedsWithin(const SwingTwist& turned, const Vector3& speeds, float time,
+                         const SwingTwistLimits& limits) const;
     Quaternion Target(const SwingTwistLimits& limits) const;
     Motion MotionOf(const JointPose& pose, const SwingTwistLimits& limits) const;
     void AddLimitRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list, uint32_t firstSlot,
                       JointRowList& rows) const;
-    void AddMotorRows(const JointPose& pose, const Motion& motion, const RotationLimitList& list, uint32_t firstSlot,
-                      JointRowList& rows) const;
+    void AddMotorRows(const JointPose& pose, const Motion& motion, const SwingTwist& turned,
+                      const RotationLimitList& list, uint32_t firstSlot, JointRowList& rows) const;
 
     std::array<AxisControl, 3> axes_;
     SwingShape shape_;

@@ -25,14 +25,16 @@ JointRow& AddRow(const JointRow& motion, float sign, uint32_t slot, JointRow::Ki
 bool LimitsLock(const AxisControl& control) { return control.limited && control.limits.min >= control.limits.max; }
 
 // Upper bound of the position that the axis may reach within the step in the direction of `sign`.
-float Reach(const AxisControl& control, double position, float speed, float sign, float slackSpeed, float dt) {
+float Reach(const AxisControl& control, double position, float speed, float sign, float slackSpeed,
+            const JointPose& pose) {
+    if (pose.isDirect) return std::numeric_limits<float>::max();
     const JointMotor& motor = control.motor;
     float closing = std::max(0.0f, sign * speed);
     if (motor.mode == MotorMode::ToVelocity) closing = std::max(closing, sign * motor.targetSpeed);
-    float reach = (1.25f * closing + slackSpeed) * dt;
+    float reach = (1.25f * closing + slackSpeed) * pose.dt;
     if (motor.mode == MotorMode::ToPosition) {
         const float target = std::clamp(motor.targetPosition, control.limits.min, control.limits.max);
-        reach += SpringTravel(motor.spring, std::max(0.0f, sign * static_cast<float>(target - position)), dt);
+        reach += SpringTravel(motor.spring, std::max(0.0f, sign * static_cast<float>(target - position)), pose.dt);
     }
     return reach;
 }
@@ -131,9 +133,9 @@ void AddControlRows(const AxisControl& control, const JointPose& pose, const Joi
     if (!control.limited) return;
     const float speed = pose.SpeedOf(motion);
     const float above = static_cast<float>(position - limits.min), below = static_cast<float>(limits.max - position);
-    if (above <= Reach(control, position, speed, -1.0f, slackSpeed, pose.dt))
+    if (above <= Reach(control, position, speed, -1.0f, slackSpeed, pose))
         AddLimitRow(limits.spring, motion, 1.0f, above, firstSlot + ControlSlots::kLowLimit, rows);
-    if (below <= Reach(control, position, speed, 1.0f, slackSpeed, pose.dt))
+    if (below <= Reach(control, position, speed, 1.0f, slackSpeed, pose))
         AddLimitRow(limits.spring, motion, -1.0f, below, firstSlot + ControlSlots::kHighLimit, rows);
 }
 

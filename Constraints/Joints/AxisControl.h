@@ -59,6 +59,13 @@ inline bool IsHard(const SpringSettings& spring) {
     return (spring.mode == SpringMode::StiffnessAndDamping ? spring.stiffness : spring.frequency) <= 0.0f;
 }
 
+// Whether a motor with a target speed drives the axis between hard stops. One with a target position has it within
+// them.
+inline bool IsDrivenAtStops(const AxisControl& control) {
+    return control.motor.mode == MotorMode::ToVelocity && control.limited && control.limits.min < control.limits.max &&
+           IsHard(control.limits.spring);
+}
+
 // Slots of the rows of one axis, relative to the axis' first slot.
 struct ControlSlots {
     static constexpr uint32_t kLowLimit = 0, kHighLimit = 1, kMotor = 2, kFriction = 3, kCount = 4;

@@ -173,6 +173,7 @@ struct JointSolveSettings {
     float baumgarte;  // 0..1: fraction of an error corrected per position iteration, limited to maxPushSpeed substepDt
     // CorrectJoints: locks are left to DirectIsland; their bias becomes the correction that is wanted.
     bool leavesLocks;
+    bool isDirect;   // of an island that DirectIsland solves, see JointPose
     bool continues;  // AddWarmStart: the impulses are those of an earlier substep of the step, not of the last step
 };
 

@@ -432,7 +432,8 @@ FULCRUM_FORCE_INLINE void AddLockMotion(JointBatch<N>& batch, Twist<Wide<N>>& a,
 template <int N>
 FULCRUM_FORCE_INLINE void PivotRow(JointRows<N>& row, const Mat3<Wide<N>>& turnA, const Mat3<Wide<N>>& turnB) {
     using Real = Wide<N>;
-    constexpr float kLeast = 0.01f;  // sine squared
+    // Sine squared of a swing, the narrower ones having no direction, and square of the sum of nearly opposite axes.
+    constexpr float kLeastAcross = kLimitSlop * kLimitSlop, kLeastBetween = 0.01f;
     const Real half(0.5f), zero(0.0f), one(1.0f);
     row.ofA = turnA * row.ofA;
     row.ofB = turnB * row.ofB;
@@ -440,7 +441,8 @@ FULCRUM_FORCE_INLINE void PivotRow(JointRows<N>& row, const Mat3<Wide<N>>& turnA
     Vec3<Real> axis;
     for (int k = 0; k < 3; ++k) axis[k] = Select(row.across > half, across[k], between[k]);
     const Real squared = Dot<Real>(axis, axis);
-    const auto pivots = (row.across + row.between > half) & (squared > Real(kLeast));
+    const auto pivots = (row.across + row.between > half) &
+                        (squared > Select(row.across > half, Real(kLeastAcross), Real(kLeastBetween)));
     RowJacobian<Real> j = row.part.GetJacobian();
     const Real length = one / Sqrt(Select(pivots, squared, one));
     axis = axis * Select(Dot<Real>(axis, j.b.angular) < zero, -length, length);

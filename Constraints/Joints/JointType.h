@@ -46,8 +46,11 @@ struct JointPose {
     Vector3 armA, armB;  // m, from the center of mass to the anchor
     Vector3 offset;      // m, from A's anchor to B's
     Quaternion frameA, frameB;
-    Twist<float> velocityA, velocityB;                             // m/s of the centers of mass, rad/s
-    float dt = 0, substepDt = 0;                                   // s
+    Twist<float> velocityA, velocityB;  // m/s of the centers of mass, rad/s
+    float dt = 0, substepDt = 0;        // s
+    // The island's joints are solved at once, so that motors of others may take this one to any of its limits within
+    // the step, however far.
+    bool isDirect = false;
     Position anchorA = Position::Zero();                           // m, world space
     Vector3 turnedA = Vector3::Zero(), turnedB = Vector3::Zero();  // rad: rotation of the bodies in the last step
 

@@ -202,6 +202,7 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
         pose.turnedB = FiniteOrZero(types[batch.joint[lane]]->turnedB);
         pose.dt = settings.dt;
         pose.substepDt = settings.substepDt;
+        pose.isDirect = settings.isDirect;
         const BodyPose& a = bodies.poses[batch.bodyA[lane]];
         pose.anchorA = Position(a.position[0], a.position[1], a.position[2]) + pose.armA.cast<double>();
         types[batch.joint[lane]]->quiet = {};

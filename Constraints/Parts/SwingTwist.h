@@ -320,9 +320,9 @@ struct Pyramid {
 
 }  // namespace detail
 
-// Neither range locked nor free. Inside, all four faces; outside, the rotation to the nearest point of the pyramid and,
-// if that is small, the other faces, so that the swing cannot leave at a corner. The smallest error is the distance to
-// the edge.
+// Neither range locked nor free. Inside, all four faces; outside, the rotation to the nearest point of the pyramid in
+// place of the worst face and, if that is small, the other faces: beyond a corner, too, where one row would leave the
+// way across it free. The smallest error is the distance to the edge.
 inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const AngleRange& rangeY,
                              const AngleRange& rangeZ) {
     const detail::Pyramid pyramid{{rangeY, rangeZ}};
@@ -335,16 +335,18 @@ inline void AddPyramidLimits(RotationLimitList& list, const SwingTwist& r, const
         isBeyond[face] = pyramid.IsBeyond(face, r.swing);
         if (isBeyond[face] && (worst < 0 || faces[face].error < faces[worst].error)) worst = face;
     }
+    const auto add = [&](const RotationLimit& limit) {
+        list.Add(limit.slot, limit.error, detail::FromSwingPlane(limit.axis), false,
+                 detail::FromSwingPlane(limit.pole));
+    };
     constexpr float kShortAngle = 0.1f;  // rad; farther out the circles deviate from the faces
     if (worst >= 0) {
         const RotationLimit back = pyramid.RotationToRegion(d, faces, isBeyond, faces[worst].slot);
-        list.Add(back.slot, back.error, detail::FromSwingPlane(back.axis), false, detail::FromSwingPlane(back.pole));
+        add(back);
         if (back.error < -kShortAngle) return;
     }
     for (int face = 0; face < 4; ++face)
-        if (!isBeyond[face])
-            list.Add(faces[face].slot, faces[face].error, detail::FromSwingPlane(faces[face].axis), false,
-                     detail::FromSwingPlane(faces[face].pole));
+        if (face != worst) add(faces[face]);
 }
 
 // Adds the rows of a swing's limits: none if both axes are free, else one to four.

@@ -130,6 +130,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     }
     joints.maxPushSpeed = s.jointPushSpeed;
     joints.sleepSeconds = s.sleep.seconds;
+    joints.isDirect = group.isDirect;
     joints.leavesLocks = joints.continues = false;
     return effort;
 }

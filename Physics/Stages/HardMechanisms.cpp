@@ -19,6 +19,15 @@ bool HasLocks(const Joint& joint) {
     return locks.linear != LinearLock::None || locks.angular != AngularLock::None;
 }
 
+bool IsDrivenAtStops(const Joint& joint) {
+    constexpr JointAxis kAxes[] = {JointAxis::LinearX,  JointAxis::LinearY,  JointAxis::LinearZ,
+                                   JointAxis::AngularX, JointAxis::AngularY, JointAxis::AngularZ};
+    return std::ranges::any_of(kAxes, [&](JointAxis axis) {
+        const AxisControl* control = joint.type->Control(axis);
+        return control && IsDrivenAtStops(*control);
+    });
+}
+
 class Finder {
 public:
     Finder(const BodyStore& bodies, const ConstraintColoring& coloring, const JointStore& joints,
@@ -70,6 +79,7 @@ private:
         const size_t begin = queued_;
         bool isStrained = false, isIterated = false;
         bool isLever = true;            // all joints pass torque on
+        bool isDriven = false;          // by a motor, at a stop
         size_t links = 0, anchors = 0;  // joints with other bodies, each counted twice, and with immovable ones
         // The root: a body connected to an immovable one, else the heaviest.
         uint32_t root = first;
@@ -95,6 +105,7 @@ private:
             isLever &= joint.type->Locks().angular != AngularLock::None;
             isIterated |= joint.overridesMass || joint.priority != JointPriority::Normal || IsHeld(body);
             ++(isFixed ? anchors : links);
+            isDriven |= IsDrivenAtStops(joint);
             const bool isHeavier = !isAnchored && MassOf(body) > MassOf(root);
             if (isFixed ? !isAnchored : isHeavier) root = body;
             isAnchored |= isFixed;
@@ -107,6 +118,9 @@ private:
         if (hasLoop) return found_.closed.push_back(first);
         // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it.
         if (isStrained && isLever && count > kLeastLever) return found_.open.push_back(first);
+        // A motor takes any impulse that its speed needs, and iterations pass it on to the other joints one by one:
+        // they give way, and so does the stop.
+        if (isDriven && links / 2 + anchors > 1) return found_.open.push_back(first);
         for (size_t i = begin; i < queued_; ++i) placeOf_[queue_[i]] = kNone;
         visit(root, [](uint32_t, const Joint&, int) {});
         // Iterations leave a stretch proportional to the mean load; for a rope that carries only its own weight that is

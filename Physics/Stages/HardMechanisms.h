@@ -1,7 +1,8 @@
 // Finds the mechanisms whose joints iterations resolve poorly, which are solved directly (Constraints/Direct) where
-// that costs little: those that carry much more than their own bodies' mass, those with closed loops, and those with a
-// joint that has been strained (JointStrain.h). Called by the BuildIslands stage if joints were added or removed, or
-// began to be strained. Serial; the result depends only on the joints.
+// that costs little: those that carry much more than their own bodies' mass, those with closed loops, those of which
+// a motor with a target speed drives a joint at its stops, and those with a joint that has been strained
+// (JointStrain.h). Called by the BuildIslands stage if joints were added or removed, got such a motor, or began to be
+// strained. Serial; the result depends only on the joints.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
