@@ -82,14 +82,15 @@ struct JointRows {
     Real speed;                          // m/s or rad/s: target of J v
     Real lowest, highest;                // N s or N m s, limits of the accumulated impulse
     Real earlier;                        // N s or N m s: sum over earlier substeps
-    // Of springs: see RowSoftness.h, pushRate is massScale beta, 1/s. mostPush: limit of corrections of the error, m/s
-    // or rad/s; that of springs is kUnlimited.
+    // pushRate: of springs massScale beta, 1/s, see RowSoftness.h; of hard motors of limited force the part of the
+    // error that they drive back per second; 0 for rows whose error is corrected in the poses. mostPush: m/s or rad/s,
+    // limit of either; that of springs is kUnlimited.
     RowSoftness<Real> softness;
     Real pushRate, mostPush;
     Real speedPart;  // of springs: see SpringSoftness.h
     // Inequality rows with an error above `openAbove` are open: they only limit the approach so that the gap closes no
     // faster than within a substep (gapRate C, 1/s), with `openSoftness`. Springs are not relaxed: their openSoftness
-    // is (0, 1).
+    // is (0, 1). gapRate is also that of motors of limited force.
     Real openAbove, gapRate;
     RowSoftness<Real> openSoftness;
     Real turnsWithA;       // 1: J rotates with A from substep to substep
@@ -103,6 +104,11 @@ struct JointRows {
     Real freeMass;
     uint8_t slot[N];  // 0xFF: no row
     RowHold hold[N];
+
+    // Mask of the lanes whose error is corrected in the poses.
+    FULCRUM_FORCE_INLINE auto IsCorrected() const {
+        return (mostPush > Real(0.0f)) & (mostPush < Real(JointRow::kUnlimited)) & (pushRate <= Real(0.0f));
+    }
 };
 
 template <int N>

@@ -637,8 +637,23 @@ FULCRUM_FORCE_INLINE void SetUpRows(JointBatch<N>& batch) {
     }
 }
 
+// m/s or rad/s: the limit of what a row pushes back. A motor of limited force drives no faster than it can brake on the
+// way that is left: v^2 = 2 f / m C.
+template <int N>
+FULCRUM_FORCE_INLINE Wide<N> LargestPush(const JointRows<N>& row) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    const auto isMotor = (row.pushRate > zero) & (row.mostPush < Real(JointRow::kUnlimited));
+    if (!isMotor.Any()) [[likely]]
+        return row.mostPush;
+    const Real acceleration =
+        Max(row.highest, Real(-row.lowest)) * row.gapRate / Max(row.part.GetEffectiveMass(), Real(1e-30f));
+    return Select(isMotor, Min(row.mostPush, Sqrt(Real(2.0f) * acceleration * Abs(row.error))), row.mostPush);
+}
+
 // After SetUpRows: bias and softness of the rows. Errors of locks and limits are corrected in the poses
-// (CorrectJoints); springs keep their bias, which is their force. states: velocities at the start of a substep.
+// (CorrectJoints); springs keep their bias, which is their force, and motors of limited force drive by theirs. states:
+// velocities at the start of a substep.
 template <int N>
 FULCRUM_FORCE_INLINE void SetRowBias(JointBatch<N>& batch, const BodyState* states) {
     using Real = Wide<N>;
@@ -651,7 +666,8 @@ FULCRUM_FORCE_INLINE void SetRowBias(JointBatch<N>& batch, const BodyState* stat
     for (uint32_t i = 0; i < batch.rowCount; ++i) {
         JointRows<N>& row = batch.rows[i];
         const RowSoftness<Real>&closed = row.softness, &open = row.openSoftness;
-        Real force = Select(row.mostPush < Real(JointRow::kUnlimited), Real(0.0f), row.pushRate * row.error);
+        const Real most = LargestPush(row);
+        Real force = Clamp(Real(row.pushRate * row.error), -most, most);
         if (batch.springs) force += row.speedPart * RelativeMotion<>(row.part.GetJacobian(), a, b);
         const Real gap = open.massScale * (row.error * row.gapRate);
         const auto isOpen = row.error > row.openAbove;
@@ -728,8 +744,7 @@ FULCRUM_FORCE_INLINE void AimRadialRows(JointBatch<N>& batch, const Arcs<Wide<N>
         const Real along = Dot<Real>(v, n), across = Max(Dot<Real>(v, v) - along * along, zero),
                    outward = Dot<Real>(n, batch.radialOffset);
         const Real curve = arcs.h * Real(0.5f) * across * inverse;
-        const auto aims =
-            (row.radial > Real(0.5f)) & (row.mostPush > zero) & (row.mostPush < Real(JointRow::kUnlimited));
+        const auto aims = (row.radial > Real(0.5f)) & row.IsCorrected();
         const Real gap = Max(row.error, zero) * row.gapRate;
         const Real bias = gap + Dot<Real>(n, way) + Select(outward < zero, -curve, curve);
         row.part.SetHardBias(bias, aims);

@@ -95,13 +95,19 @@ void FillLane(JointRows<N>& rows, int lane, const JointRow& row, float previousI
     rows.speed.Set(lane, row.kind == Kind::Speed ? row.speed : 0.0f);
     if (hard) {
         SetHard(rows, lane, s);
+        // A motor works no more than its force allows: a correction of the poses would, where it is too weak.
+        const bool isWeak = row.minForce > -unlimited || row.maxForce < unlimited;
+        if (row.kind == Kind::Equal && isWeak) {
+            rows.pushRate.Set(lane, s.baumgarte * s.inverseDt);
+            rows.gapRate.Set(lane, s.inverseDt);
+        }
     } else {
         rows.softness.massScale.Set(lane, 1.0f);
         rows.mostPush.Set(lane, unlimited);
     }
     rows.openAbove.Set(lane, oneSided ? 0.0f : unlimited);
     rows.openSoftness.massScale.Set(lane, 1.0f);
-    rows.gapRate.Set(lane, oneSided ? s.inverseDt : 0.0f);
+    if (oneSided) rows.gapRate.Set(lane, s.inverseDt);
     rows.lowest.Set(lane, lowest);
     rows.highest.Set(lane, highest);
     rows.turnsWithA.Set(lane, row.turnsWithA ? 1.0f : 0.0f);

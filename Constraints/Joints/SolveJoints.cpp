@@ -282,8 +282,7 @@ void CorrectJoints(JointBatch<N>& batch, const SolverBodies& bodies, WarmStart* 
         // moved already; not springs, which are forces.
         for (uint32_t i = 0; i < batch.rowCount; ++i) {
             const JointRows<N>& row = batch.rows[i];
-            const auto corrects =
-                (row.mostPush > zero) & (row.mostPush < Real(JointRow::kUnlimited)) & (row.error <= row.openAbove);
+            const auto corrects = row.IsCorrected() & (row.error <= row.openAbove);
             const auto isLimit = row.openAbove <= zero;
             const Real left = Corrected<Real>(row.error, Select(isLimit, Max(part, Real(kLimitPart)), part), settings) +
                               RelativeMotion<>(row.part.GetJacobian(), a, b);

@@ -10,6 +10,7 @@
 #include <Fulcrum/Physics/World/SpeedLimits.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fulcrum {
 
@@ -173,7 +174,9 @@ void TurnAboutTwoAxes(BodyStore& bodies, uint32_t body, const Vector3& before, c
     float* unconstrained = bodies.unconstrained[body].row;
     for (int k = 0; k < 3; ++k) unconstrained[BodyState::kAngular + k] += turned[k] - w[k];
     bodies.SetVelocity(body, bodies.LinearVelocityOf(body), turned);
-    bodies.masses[body] = bodies.MassAlong(body, AxesOf(d, end));
+    // Of turns beyond what a float resolves there is none.
+    const BodyMass mass = bodies.MassAlong(body, AxesOf(d, end));
+    if (std::isfinite(Trace(mass))) bodies.masses[body] = mass;
 }
 
 // Validates the solved velocity of a body before it moves. If not finite, it must not reach the pose either, which

@@ -19,7 +19,7 @@ constexpr int kSeeds = 40, kAllSeeds = 400;
 struct Allowed {
     int daily, all;
 };
-constexpr Allowed kSmallGains = {4, 113}, kLargeGains = {1, 28}, kLosses = {1, 4}, kRestless = {1, 48};
+constexpr Allowed kSmallGains = {4, 113}, kLargeGains = {1, 28}, kLosses = {1, 4}, kRestless = {4, 48};
 
 class Count {
 public:

@@ -269,9 +269,22 @@ TEST(ErrorOfAJoint, OfAMotorAtItsForceLimitAreNone) {
         for (int i = 0; i < 120; ++i) {
             const double before = missing();
             world.Step();
-            const bool isTooWeak = force < 2 * kGravity;
-            ASSERT_NEAR(world.Report().largestJointError, isTooWeak ? 0 : before, kRounding) << i;
-            ASSERT_NEAR(JointsOf(world).GetError(joint).distance, isTooWeak ? 0 : missing(), kRounding) << i;
+            const double pull = std::fabs(JointsOf(world).GetAxisForces(joint, JointAxis::LinearX).motor);
+            // Of the steps in which it is at its limit for a while only, either.
+            if (pull > 0.999 * force) {
+                ASSERT_NEAR(world.Report().largestJointError, 0, kRounding) << i;
+                ASSERT_NEAR(JointsOf(world).GetError(joint).distance, 0, kRounding) << i;
+            } else if (world.Report().largestJointError > 0) {
+                ASSERT_NEAR(world.Report().largestJointError, before, kRounding) << i;
+                ASSERT_NEAR(JointsOf(world).GetError(joint).distance, missing(), kRounding) << i;
+            }
+            if (force < 2 * kGravity) {
+                ASSERT_GT(pull, 0.999 * force) << i;
+            }
+        }
+        // With (40 - 2 g) / 2 m/s2 the way of half a meter takes a third of a second.
+        if (force > 2 * kGravity) {
+            EXPECT_NEAR(missing(), 0, 1e-4);
         }
     }
 }

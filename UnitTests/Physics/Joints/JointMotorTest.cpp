@@ -157,6 +157,40 @@ TEST(Motor, AForceLimitBoundsAPositionMotor) {
     EXPECT_NEAR(rig.Forces().motor, 20, 1e-2);
 }
 
+// Where its force does not suffice, it is the force alone that moves the body, no correction of its pose.
+TEST(Motor, AForceLimitBoundsAPositionMotorWithoutASpring) {
+    JointMotor motor = PositionMotor(5, {});
+    motor.minForce = -20;
+    motor.maxForce = 20;
+    SliderRig rig(10, {.motor = motor});
+    rig.world.Run(0.5);
+    EXPECT_NEAR(rig.Speed(), 1, Rounding(1, 30) + 1e-5);
+    EXPECT_NEAR(rig.Place(), 0.5 * 2 * 0.25, 0.5 * kStep / 4 + 1e-4);
+    EXPECT_NEAR(rig.Forces().motor, 20, 1e-2);
+    // It brakes on the second half of the way: 2 sqrt(2 m / f 5 / 2) seconds; then the last millimeters take their
+    // time.
+    double farthest = 0;
+    for (int i = 30; i < 210; ++i) {
+        rig.world.Step();
+        farthest = std::max(farthest, rig.Place());
+    }
+    EXPECT_NEAR(rig.Place(), 5, 0.02);
+    rig.world.Run(1);
+    EXPECT_NEAR(rig.Place(), 5, 1e-3);
+    EXPECT_NEAR(rig.Speed(), 0, 1e-3);
+    EXPECT_LT(farthest, 5.02);
+}
+
+TEST(Motor, OneTooWeakToHoldItsPlaceSlowsTheFall) {
+    JointMotor motor = PositionMotor(0, {});
+    motor.minForce = -20;
+    motor.maxForce = 20;
+    SliderRig rig(10, {.motor = motor}, NoSleep(), {0, 1, 0});
+    rig.world.Run(1);
+    EXPECT_NEAR(rig.Speed(), -(kGravity - 2), 1e-3);
+    EXPECT_NEAR(rig.Place(), -0.5 * (kGravity - 2), 0.5 * kGravity * kStep / 4 + 1e-3);
+}
+
 TEST(Motor, TargetsMayChangeEveryStep) {
     // A critically damped motor of 10 Hz follows a slow sine with the lag 2 zeta / w in time.
     SliderRig rig(2, {.motor = PositionMotor(0, FrequencySpring(10, 1))});
