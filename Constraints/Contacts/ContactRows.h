@@ -279,14 +279,16 @@ FULCRUM_FORCE_INLINE void WarmStartRows(ContactBatch<N, kFixedB>& batch, BodySta
     Scatter(batch, twists);
 }
 
-// For batches with restitution, with a surface velocity between two dynamic bodies, or with gentle lanes.
+// For batches with restitution, with a surface velocity between two dynamic bodies, or with gentle lanes where there is
+// recovery.
 template <Pass kPass, int N, bool kFixedB>
 void SolveRareRows(ContactBatch<N, kFixedB>& batch, BodyState* states, const ContactSolveSettings& settings);
 
 template <Pass kPass, int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveAllRows(ContactBatch<N, kFixedB>& batch, BodyState* states,
                                        const ContactSolveSettings& settings) {
-    if (batch.bounces || (!kFixedB && batch.hasSurface) || batch.gentle != 0)
+    const bool isGentle = batch.gentle != 0 && settings.pushRate > 0;
+    if (batch.bounces || (!kFixedB && batch.hasSurface) || isGentle)
         return SolveRareRows<kPass>(batch, states, settings);
     SolveRows<kPass, false>(batch, states, settings);
 }

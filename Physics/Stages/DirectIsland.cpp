@@ -14,9 +14,10 @@ namespace {
 using namespace joints;
 using Vector = Vec3<double>;
 
-// Softness of rows that are hard: gamma as a fraction of J M^-1 J^T. As little as double precision allows at mass
-// ratios of 10^4.
-constexpr double kJointSoftness = 1e-6;
+// Softness of rows that are hard: gamma as a fraction of J M^-1 J^T. A joint gives way to a load by that part of the
+// load's own motion times the ratio of masses, and a heavy one then whirls light links: a ball of 3 10^5 times the mass
+// of its chain's links tears it at 1e-7. Where loops or contacts contradict joints, impulses grow with its inverse.
+constexpr double kFreeSoftness = 1e-8, kSoftness = 1e-6;
 // Unbalanced impulse over mass that is left, as a part of g h.
 constexpr double kTolerance = 1e-4;
 // m/s2, least gravity that counts for both.
@@ -59,14 +60,16 @@ double Response(const DirectBody& body, const double (&j)[6]) {
 class Filler {
 public:
     Filler(const BodyStore& bodies, std::span<const uint32_t> localOf, std::span<const DirectBody> island,
-           std::span<DirectRow> rows, std::span<DirectRow> across, std::span<DirectStiffness> stiffness, double h)
+           std::span<DirectRow> rows, std::span<DirectRow> across, std::span<DirectStiffness> stiffness, double h,
+           double softness)
         : bodies_(bodies),
           localOf_(localOf),
           island_(island),
           rows_(rows),
           across_(across),
           stiffness_(stiffness),
-          h_(h) {}
+          h_(h),
+          softness_(softness) {}
 
     void Add(JointBatch<kLanes>& batch) {
         WithLocks(batch.linear, batch.angular, [&](auto linear, auto angular) {
@@ -171,7 +174,7 @@ private:
         double k = 0;
         if (row.a != DirectRow::kNone) k += Response(island_[row.a], row.ja);
         if (row.b != DirectRow::kNone) k += Response(island_[row.b], row.jb);
-        row.inverseGamma = k > 0 ? 1 / (kJointSoftness * k) : 0;
+        row.inverseGamma = k > 0 ? 1 / (softness_ * k) : 0;
     }
 
     // The torque r x f of an impulse f at an arm r turns with its body; of the matrix of that stiffness the positive
@@ -213,7 +216,7 @@ private:
         // Pulled together: the impulse on B is against the offset.
         const double tension = -along.impulse * Dot<double>(n, offset) / length;
         if (!(length > 1e-6) || !(tension > 0)) return;
-        const double ratio = h_ * tension / (length * kJointSoftness * along.inverseGamma);
+        const double ratio = h_ * tension / (length * softness_ * along.inverseGamma);
         if (!(ratio > kResolved)) return;
         const Vector t1 = PerpendicularTo<double>(n), t2 = Cross<double>(n, t1);
         for (const Vector& t : {t1, t2}) {
@@ -232,7 +235,7 @@ private:
     std::span<const DirectBody> island_;
     std::span<DirectRow> rows_, across_;
     std::span<DirectStiffness> stiffness_;
-    double h_;
+    double h_, softness_;
     size_t acrossCount_ = 0;
 };
 
@@ -361,7 +364,8 @@ void DirectIsland::SetBodies(From from) {
 
 bool DirectIsland::SolveVelocities(From from, ScratchArena& scratch) {
     SetBodies(from);
-    Filler filler(bodies_, localOf_, island_, rows_, across_, stiffness_, h_);
+    Filler filler(bodies_, localOf_, island_, rows_, across_, stiffness_, h_,
+                  group_.mayContradict ? kSoftness : kFreeSoftness);
     VisitJoints(layout_, group_, [&](JointBatch<kLanes>& batch) { filler.Add(batch); });
     filler.Finish();
     const DirectProblem problem{island_, rows_.first(filler.rowCount), {}, stiffness_.first(filler.stiffnessCount)};

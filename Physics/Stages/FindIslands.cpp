@@ -141,7 +141,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     VisitEntries(coloring, Kind::Joint, unite);
     const std::span<bool> overflows = scratch.Allocate<bool>(coloring.HasOverflow() ? count : 0),
                           hasJoints = scratch.Allocate<bool>(count),
-                          hasContacts = scratch.Allocate<bool>(hard.closed.empty() ? 0 : count);
+                          hasContacts = scratch.Allocate<bool>(hard.open.empty() && hard.closed.empty() ? 0 : count);
     std::fill(overflows.begin(), overflows.end(), false);
     std::fill(hasJoints.begin(), hasJoints.end(), false);
     std::fill(hasContacts.begin(), hasContacts.end(), false);
@@ -174,6 +174,9 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         const uint32_t root = result.rootOf[placeOf(body)];
         isHard[root] = isHard[root] || !hasContacts[root];
     }
+    // Whose joints may contradict contacts, or each other.
+    const std::span<bool> mayContradict = hasContacts;
+    for (const uint32_t body : hard.closed) mayContradict[result.rootOf[placeOf(body)]] = true;
     std::optional<PatternFinder> patterns;
     if (!hard.open.empty() || !hard.closed.empty())
         patterns.emplace(bodies, coloring, result.rootOf, isHard, patternWords, scratch);
@@ -196,6 +199,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         const bool large = sizes[i] >= kLargeIsland || isOverflowing;
         SolverGroup own;
         if (areAnyHard && isHard[i] && !isOverflowing) patterns->Find(i, own);
+        own.mayContradict = own.isDirect && mayContradict[i];
         const IslandEffort& effort = efforts[i];
         const bool differs = large && hasJoints[i] != jointsOverflow;  // from the first group
         // A group of one island is solved by one worker: too slow for a large island, unless required.

@@ -14,7 +14,7 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x6a86c7901373672cull;
-constexpr uint64_t kGoldenHashOfJoints = 0x8d2e24fd130eaf37ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x640f96146373d975ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xc1b9cf06fe6a0b0full;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
 constexpr uint64_t kGoldenHashOfGuidedBodies = 0x2d53a0e4f8b4cef5ull;

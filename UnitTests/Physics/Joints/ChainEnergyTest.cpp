@@ -39,6 +39,33 @@ TEST(ChainEnergy, RodsOnBallJointsGainNone) {
     }
 }
 
+// A ball of up to 3 10^5 times the mass of the links, which sway under its weight many times in a substep.
+TEST(ChainEnergy, LightLinksCarryAnyLoadAtAnyTimeStep) {
+    for (const float mass : {1e4f, 3e5f})
+        for (const double dt : {1.0 / 60, 1.0 / 240, 1.0 / 300}) {
+            TestWorld world(NoSleep());
+            BodyId last = AddHook(world);
+            std::vector<JointId> joints;
+            for (int i = 0; i <= 16; ++i) {
+                const bool isBall = i == 16;
+                const BodyId next = world.Add({.shape = isBall ? SphereOf(0.4f) : BoxOf(0.45f, 0.05f, 0.05f),
+                                               .position = {i + 0.5, 0, 0},
+                                               .mass = isBall ? mass : 1,
+                                               .mask = 0});
+                joints.push_back(Join(world, PointJointSettings{Between(last, next, {1.0 * i, 0, 0})}));
+                last = next;
+            }
+            double gap = 0;
+            for (int i = 0; i < 2.5 / dt; ++i) {
+                world.Step(dt);
+                gap = std::max(gap, LargestGap(world, joints));
+            }
+            EXPECT_LT(gap, 1e-3) << mass << " kg, dt " << dt;
+            // It has swung to the other side of its lowest place.
+            EXPECT_LT(world.PositionOf(last).x(), 2) << mass << " kg, dt " << dt;
+        }
+}
+
 // The joints are off the axes of the links, whose inertia about these is 1/40 of the others: a tension of tons spins
 // them fast. What substeps do not resolve of that, the stiffness of the joints' arms damps.
 void HangLinksBesideTheirAxes(int substeps, double mostChange) {
