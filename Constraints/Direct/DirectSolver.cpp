@@ -22,6 +22,13 @@ void AddTo(std::span<Column6> y, std::span<const Column6> step, double factor) {
     for (size_t i = 0; i < y.size(); ++i) (Lanes6(y[i]) + Lanes6(step[i]) * factor).StoreTo(y[i]);
 }
 
+// Newton's step, by this factor, from where the model was evaluated last.
+void FindStep(const DirectModel& model, const DirectPattern& pattern, const DirectFactor& factor,
+              std::span<Column6> step) {
+    for (size_t i = 0; i < step.size(); ++i) (Lanes6::Zero() - Lanes6(model.Gradient()[i])).StoreTo(step[i]);
+    SolveFactored(pattern, factor.matrix, step);
+}
+
 }  // namespace
 
 DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pattern, const DirectSettings& settings,
@@ -42,10 +49,7 @@ DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pa
     model.Start(y);
     y.back() = {};
 
-    const auto findStep = [&] {
-        for (uint32_t i = 0; i < bodies; ++i) (Lanes6::Zero() - Lanes6(model.Gradient()[i])).StoreTo(step[i]);
-        SolveFactored(pattern, factor.matrix, step.first(bodies));
-    };
+    const auto findStep = [&] { FindStep(model, pattern, factor, step.first(bodies)); };
     bool mayChord = factor.isValid, isMarginRight = true;
     double chord = 0;  // squared length of the last step, if that was a chord step; else 0
     result.residual = model.Evaluate(y);
@@ -117,8 +121,7 @@ bool StepDirectly(const DirectProblem& problem, const DirectPattern& pattern, Di
         factor.isValid = Factorize(pattern, factor.matrix, scratch.Allocate<uint32_t>(bodies));
         if (!factor.isValid) return false;
     }
-    for (uint32_t i = 0; i < bodies; ++i) (Lanes6::Zero() - Lanes6(model.Gradient()[i])).StoreTo(step[i]);
-    SolveFactored(pattern, factor.matrix, step);
+    FindStep(model, pattern, factor, step);
     AddTo(y.first(bodies), step, 1);
     model.Store(y, velocities, problem.rows);
     return true;

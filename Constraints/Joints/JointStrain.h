@@ -1,6 +1,6 @@
 // Joints that are strained: impacts and contacts have moved their bodies apart faster than iterations of single joints
 // could prevent. From then until they sleep, a mechanism whose joints all pass torque on is solved by the direct solver
-// (Stages/JointTrees.h). Free functions over lanes, no state.
+// (Stages/HardMechanisms.h). Free functions over lanes, no state.
 #pragma once
 
 #include <Fulcrum/Constraints/Parts/BodySide.h>

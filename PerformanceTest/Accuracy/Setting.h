@@ -18,7 +18,7 @@ enum class Family : uint8_t {
     Soft,       // the default: soft rows, relaxed
     Baumgarte,  // hard rows, position passes
     Libccd,     // soft rows, contacts by libccd
-    NoTrees,    // soft rows, joints under load are not solved as trees
+    NoTrees,    // soft rows, no joints are solved directly
     Fixed,      // soft rows, every island with the system's effort: no AccuracyTarget
     Target,     // soft rows, effort by an AccuracyTarget
     Peer,       // another engine

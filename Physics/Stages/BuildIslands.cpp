@@ -1,10 +1,9 @@
 // Sorts the colored constraints into groups of islands. Small islands are packed into groups that fit a worker's cache
 // and are solved entirely by one worker, which avoids all barriers and most of the memory traffic. Done only in steps
 // in which a constraint began or ended. Serial; the islands depend on the constraints only.
-//   FindIslands.h   the islands and their groups
-//   JointTrees.h    joints under load that are solved as trees
-//   JointBatches.h  joints in lanes
-//   PlaceTrees.h    trees in groups
+//   HardMechanisms.h  mechanisms that are solved directly
+//   FindIslands.h     the islands and their groups
+//   JointBatches.h    joints in lanes
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/FindIslands.h>
 #include <Fulcrum/Physics/Stages/JointBatches.h>

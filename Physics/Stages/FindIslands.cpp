@@ -139,9 +139,10 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     };
     VisitEntries(coloring, Kind::Moving, unite);
     VisitEntries(coloring, Kind::Joint, unite);
+    const bool areAnyHard = !hard.open.empty() || !hard.closed.empty();
     const std::span<bool> overflows = scratch.Allocate<bool>(coloring.HasOverflow() ? count : 0),
                           hasJoints = scratch.Allocate<bool>(count),
-                          hasContacts = scratch.Allocate<bool>(hard.open.empty() && hard.closed.empty() ? 0 : count);
+                          hasContacts = scratch.Allocate<bool>(areAnyHard ? count : 0);
     std::fill(overflows.begin(), overflows.end(), false);
     std::fill(hasJoints.begin(), hasJoints.end(), false);
     std::fill(hasContacts.begin(), hasContacts.end(), false);
@@ -165,7 +166,6 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     result.rootOf = scratch.Allocate<uint32_t>(count);
     for (uint32_t i = 0; i < count; ++i) result.rootOf[i] = sets.Find(i);
     // Bodies of hard islands by root, ascending.
-    const bool areAnyHard = !hard.open.empty() || !hard.closed.empty();
     const std::span<bool> isHard = scratch.Allocate<bool>(areAnyHard ? count : 0);
     std::ranges::fill(isHard, false);
     for (const uint32_t body : hard.open) isHard[result.rootOf[placeOf(body)]] = true;
@@ -178,8 +178,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     const std::span<bool> mayContradict = hasContacts;
     for (const uint32_t body : hard.closed) mayContradict[result.rootOf[placeOf(body)]] = true;
     std::optional<PatternFinder> patterns;
-    if (!hard.open.empty() || !hard.closed.empty())
-        patterns.emplace(bodies, coloring, result.rootOf, isHard, patternWords, scratch);
+    if (areAnyHard) patterns.emplace(bodies, coloring, result.rootOf, isHard, patternWords, scratch);
     groups.assign(1, {.isLarge = true, .hasJoints = jointsOverflow});
     // The groups that small islands are added to, those without joints and with joints.
     struct OpenGroup {

@@ -266,7 +266,7 @@ bool IntegrateVelocitiesInLanes(BodyStore& bodies, const JointStore& joints, con
     for (uint32_t body : index) {
         const BodyDynamics& d = bodies.dynamics[body];
         if (d.motion != MotionType::Dynamic || d.lockedAxes != LockedAxes::None || d.hasForce) return false;
-        if ((d.dispersing || d.crowded != 0) && (d.dispersing || !joints.HasAny(body))) return false;
+        if (d.dispersing || (d.crowded && !joints.HasAny(body))) return false;
     }
     const Rows<Lanes> limits(index, [&](uint32_t body) { return bodies.dynamics[body].LimitsRow(); });
     const Lanes zero(0.0f), linearDamping = limits.at[BodyDynamics::kLinearDamping],

@@ -52,13 +52,16 @@ void WakeAround(WorldState& world, uint32_t body) {
     WakeJoined(world, body);
 }
 
+uint32_t BodyOf(uint32_t body) { return body; }
+uint32_t BodyOf(const BodyPlace& place) { return place.body; }
+
 // Bodies as indices or places.
-template <class Bodies, class BodyOf, class PoseOf>
-void TeleportAll(WorldState& world, const Bodies& bodies, const BodyOf& bodyOf, const PoseOf& poseOf) {
-    for (const auto& body : bodies) WakeAround(world, bodyOf(body));
-    for (const auto& body : bodies) world.bodies.SetCenterPose(bodyOf(body), poseOf(body));
-    for (const auto& body : bodies) UpdatePlaced(world, bodyOf(body));
-    for (const auto& body : bodies) WakeNeighbors(world, bodyOf(body));
+template <class Bodies, class PoseOf>
+void TeleportAll(WorldState& world, const Bodies& bodies, const PoseOf& poseOf) {
+    for (const auto& body : bodies) WakeAround(world, BodyOf(body));
+    for (const auto& body : bodies) world.bodies.SetCenterPose(BodyOf(body), poseOf(body));
+    for (const auto& body : bodies) UpdatePlaced(world, BodyOf(body));
+    for (const auto& body : bodies) WakeNeighbors(world, BodyOf(body));
 }
 
 // Whether a joint is apart by more than the size of a body, or turned by more than half a radian, beyond which its rows
@@ -90,9 +93,7 @@ public:
                 moved.push_back({other, world_.bodies.ExactCenterPoseOf(other)});
                 Pose now = world_.bodies.ExactCenterPoseOf(body) * Relative(moved[i].before, moved.back().before);
                 now.rotation = Normalized(now.rotation);
-                TeleportAll(
-                    world_, std::span(&other, 1), [](uint32_t follower) { return follower; },
-                    [&](uint32_t) { return now; });
+                TeleportAll(world_, std::span(&other, 1), [&](uint32_t) { return now; });
             });
         }
     }
@@ -146,21 +147,17 @@ private:
 
 void Teleport(WorldState& world, std::span<const BodyPlace> places) {
     NoteMoved(world, places);
-    TeleportAll(
-        world, places, [](const BodyPlace& place) { return place.body; },
-        [&](const BodyPlace& place) {
-            const Vector3 center = world.bodies.cold[place.body].shape->Mass().centerOfMass;
-            return Pose{place.pose.position + Rotate(place.pose.rotation, center).cast<double>(), place.pose.rotation};
-        });
+    TeleportAll(world, places, [&](const BodyPlace& place) {
+        const Vector3 center = world.bodies.cold[place.body].shape->Mass().centerOfMass;
+        return Pose{place.pose.position + Rotate(place.pose.rotation, center).cast<double>(), place.pose.rotation};
+    });
 }
 
 void Teleport(WorldState& world, std::span<const uint32_t> bodies, FunctionRef<Vector3(uint32_t)> displacementOf) {
-    TeleportAll(
-        world, bodies, [](uint32_t body) { return body; },
-        [&](uint32_t body) {
-            const Pose pose = world.bodies.ExactCenterPoseOf(body);
-            return Pose{pose.position + displacementOf(body).cast<double>(), pose.rotation};
-        });
+    TeleportAll(world, bodies, [&](uint32_t body) {
+        const Pose pose = world.bodies.ExactCenterPoseOf(body);
+        return Pose{pose.position + displacementOf(body).cast<double>(), pose.rotation};
+    });
 }
 
 void FollowMovedBodies(WorldState& world) {
