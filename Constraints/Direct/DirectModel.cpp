@@ -60,29 +60,6 @@ struct Sliding {
     }
 };
 
-// H += J^T D J of a few rows, block by block.
-class Products {
-public:
-    bool IsFull() const { return count_ == kMost; }
-    void Add(const Column6& a, const Column6& b, double d) {
-        a_[count_] = a;
-        b_[count_] = b;
-        (Lanes6(a) * d).StoreTo(weightedA_[count_]);
-        (Lanes6(b) * d).StoreTo(weightedB_[count_++]);
-    }
-    void AddTo(Block6* ofA, Block6* ofB, Block6* ofBoth, bool isAFirst) {
-        if (ofA) AddProducts(*ofA, weightedA_, a_, count_);
-        if (ofB) AddProducts(*ofB, weightedB_, b_, count_);
-        if (ofBoth) AddProducts(*ofBoth, isAFirst ? weightedB_ : weightedA_, isAFirst ? a_ : b_, count_);
-        count_ = 0;
-    }
-
-private:
-    static constexpr int kMost = 8;
-    int count_ = 0;
-    Column6 a_[kMost], b_[kMost], weightedA_[kMost], weightedB_[kMost];
-};
-
 }  // namespace
 
 std::span<const DirectEdge> DirectEdgesOf(std::span<const DirectRow> rows, ScratchArena& scratch) {
@@ -224,15 +201,34 @@ void DirectModel::Start(std::span<Column6> y) const {
         }
 }
 
-double DirectModel::Evaluate(std::span<const Column6> y) {
+void DirectModel::FindSpeeds(std::span<const Column6> y) {
     for (const Run& run : runs_) {
         const Lanes6 ya(y[run.a]), yb(y[run.b]);
-        for (uint32_t r = run.begin; r < run.end; ++r) {
-            Row& row = rows_[r];
-            row.speed = row.c + Sum(Lanes6(jacobians_[r].a) * ya + Lanes6(jacobians_[r].b) * yb);
-            row.impulse = std::min(std::max(-row.d * row.speed, row.lo), row.hi);
-        }
+        for (uint32_t r = run.begin; r < run.end; ++r)
+            rows_[r].speed = rows_[r].c + Sum(Lanes6(jacobians_[r].a) * ya + Lanes6(jacobians_[r].b) * yb);
     }
+}
+void DirectModel::FindStepSpeeds(std::span<const Column6> step) {
+    for (const Run& run : runs_) {
+        const Lanes6 stepA(step[run.a]), stepB(step[run.b]);
+        for (uint32_t r = run.begin; r < run.end; ++r)
+            rows_[r].stepSpeed = Sum(Lanes6(jacobians_[r].a) * stepA + Lanes6(jacobians_[r].b) * stepB);
+    }
+}
+
+void DirectModel::FindGradientOfMasses(std::span<const Column6> y) {
+    std::copy_n(y.begin(), gradient_.size(), gradient_.begin());
+    if (!hasStiffness_) return;
+    for (uint32_t i = 0; i < pattern_.Bodies(); ++i) {
+        double moved[3];
+        SymmetricTimes(bodies_[i].stiffness, y[i].v + 3, moved);
+        for (int k = 0; k < 3; ++k) gradient_[i][3 + k] += moved[k] + bodies_[i].force[k];
+    }
+}
+
+double DirectModel::Evaluate(std::span<const Column6> y) {
+    FindSpeeds(y);
+    for (Row& row : rows_) row.impulse = std::min(std::max(-row.d * row.speed, row.lo), row.hi);
     for (const Patch& patch : patches_) {
         Row &first = rows_[patch.tangent], &second = rows_[patch.tangent + 1];
         const Sliding sliding(first.speed, second.speed, patch.d, patch.limit);
@@ -240,13 +236,7 @@ double DirectModel::Evaluate(std::span<const Column6> y) {
         second.impulse = -sliding.factor * second.speed;
     }
 
-    std::copy_n(y.begin(), gradient_.size(), gradient_.begin());
-    if (hasStiffness_)
-        for (uint32_t i = 0; i < pattern_.Bodies(); ++i) {
-            double moved[3];
-            SymmetricTimes(bodies_[i].stiffness, y[i].v + 3, moved);
-            for (int k = 0; k < 3; ++k) gradient_[i][3 + k] += moved[k] + bodies_[i].force[k];
-        }
+    FindGradientOfMasses(y);
     for (const Run& run : runs_) {
         Lanes6 ga(gradient_[run.a]), gb(gradient_[run.b]);
         for (uint32_t r = run.begin; r < run.end; ++r) {
@@ -266,7 +256,7 @@ double DirectModel::Evaluate(std::span<const Column6> y) {
     return residual;
 }
 
-void DirectModel::Assemble(const BlockMatrix& matrix, bool withMargin) const {
+void DirectModel::AssembleMasses(const BlockMatrix& matrix) const {
     std::fill(matrix.diagonal.begin(), matrix.diagonal.end(), Block6{});
     std::fill(matrix.lower.begin(), matrix.lower.end(), Block6{});
     for (uint32_t i = 0; i < pattern_.Bodies(); ++i) {
@@ -279,23 +269,26 @@ void DirectModel::Assemble(const BlockMatrix& matrix, bool withMargin) const {
         block.columns[3][5] = block.columns[5][3] = g[4];
         block.columns[4][5] = block.columns[5][4] = g[5];
     }
-    Products products;
-    const auto flush = [&](const Run& run) {
-        const auto diagonal = [&](uint32_t place) {
-            return place < pattern_.Bodies() ? &matrix.diagonal[place] : nullptr;
-        };
-        products.AddTo(diagonal(run.a), diagonal(run.b),
-                       run.block != DirectPattern::kNone ? &matrix.lower[run.block] : nullptr, run.isAFirst);
-    };
+}
+
+void DirectModel::AddToMatrix(DirectProducts& products, const Run& run, const BlockMatrix& matrix) const {
+    const auto diagonal = [&](uint32_t place) { return place < pattern_.Bodies() ? &matrix.diagonal[place] : nullptr; };
+    products.AddTo(diagonal(run.a), diagonal(run.b),
+                   run.block != DirectPattern::kNone ? &matrix.lower[run.block] : nullptr, run.isAFirst);
+}
+
+void DirectModel::Assemble(const BlockMatrix& matrix, bool withMargin) const {
+    AssembleMasses(matrix);
+    DirectProducts products;
     for (const Run& run : runs_) {
         for (uint32_t r = run.begin; r < run.end; ++r) {
             const Row& row = rows_[r];
             const double wanted = -row.d * row.speed, margin = withMargin ? row.margin : 0;
             if (!(row.d > 0 && wanted > row.lo - margin && wanted < row.hi + margin)) continue;
-            if (products.IsFull()) flush(run);
+            if (products.IsFull()) AddToMatrix(products, run, matrix);
             products.Add(jacobians_[r].a, jacobians_[r].b, row.d);
         }
-        flush(run);
+        AddToMatrix(products, run, matrix);
     }
     for (const Patch& patch : patches_) {
         const Row &first = rows_[patch.tangent], &second = rows_[patch.tangent + 1];
@@ -314,7 +307,7 @@ void DirectModel::Assemble(const BlockMatrix& matrix, bool withMargin) const {
             };
             products.Add(across(j1.a, j2.a), across(j1.b, j2.b), sliding.factor);
         }
-        flush(runs_[patch.run]);
+        AddToMatrix(products, runs_[patch.run], matrix);
     }
 }
 
@@ -346,11 +339,7 @@ double DirectModel::SearchAlong(std::span<const Column6> y, std::span<const Colu
     // end at its zero once they are on the right piece, and most steps of the solver are on that at once.
     constexpr double kFlat = 1e-3;
     constexpr int kMostSteps = 50;  // halving alone exhausts a double's digits
-    for (const Run& run : runs_) {
-        const Lanes6 stepA(step[run.a]), stepB(step[run.b]);
-        for (uint32_t r = run.begin; r < run.end; ++r)
-            rows_[r].stepSpeed = Sum(Lanes6(jacobians_[r].a) * stepA + Lanes6(jacobians_[r].b) * stepB);
-    }
+    FindStepSpeeds(step);
     double first = 0, start = 0, quadratic = 0;
     for (uint32_t i = 0; i < pattern_.Bodies(); ++i) {
         first += Dot(gradient_[i], step[i]);

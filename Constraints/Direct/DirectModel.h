@@ -13,6 +13,30 @@
 
 namespace fulcrum {
 
+// J^T D J of a few rows of the same bodies, which are added to H block by block.
+class DirectProducts {
+public:
+    bool IsFull() const { return count_ == kMost; }
+    void Add(const Column6& a, const Column6& b, double d) {
+        a_[count_] = a;
+        b_[count_] = b;
+        (Lanes6(a) * d).StoreTo(weightedA_[count_]);
+        (Lanes6(b) * d).StoreTo(weightedB_[count_++]);
+    }
+    // Null: there is no such block. Empties itself.
+    void AddTo(Block6* ofA, Block6* ofB, Block6* ofBoth, bool isAFirst) {
+        if (ofA) AddProducts(*ofA, weightedA_, a_, count_);
+        if (ofB) AddProducts(*ofB, weightedB_, b_, count_);
+        if (ofBoth) AddProducts(*ofBoth, isAFirst ? weightedB_ : weightedA_, isAFirst ? a_ : b_, count_);
+        count_ = 0;
+    }
+
+private:
+    static constexpr int kMost = 8;
+    int count_ = 0;
+    Column6 a_[kMost], b_[kMost], weightedA_[kMost], weightedB_[kMost];
+};
+
 class DirectModel {
 public:
     // Arrays of columns are by place, with one more for what is none of the bodies.
@@ -37,6 +61,8 @@ public:
     void Store(std::span<const Column6> y, std::span<DirectVelocity> velocities, std::span<DirectRow> rows) const;
 
 private:
+    friend class InteriorPoint;
+
     struct Body {
         double linear[3], angular[6];  // S: diagonal; lower triangle by rows
         double velocity[6];            // v*
@@ -73,6 +99,14 @@ private:
     };
 
     void SetLimit(Patch& patch, double limit);
+    // Speeds at y, and changes of speed by a step.
+    void FindSpeeds(std::span<const Column6> y);
+    void FindStepSpeeds(std::span<const Column6> step);
+    // The part of H, and of the gradient at y, by masses and stiffness.
+    void AssembleMasses(const BlockMatrix& matrix) const;
+    void FindGradientOfMasses(std::span<const Column6> y);
+    // Adds what was collected, of rows of a run.
+    void AddToMatrix(DirectProducts& products, const Run& run, const BlockMatrix& matrix) const;
     Slope SlopeAt(double factor, double start, double quadratic) const;
 
     const DirectPattern& pattern_;

@@ -61,7 +61,7 @@ struct DirectProblem {
 
 struct DirectSettings {
     double tolerance = 0;  // m/s, of a body's unbalanced impulse over its mass; of torques over sqrt(mass inertia)
-    uint32_t mostFactorizations = 30;
+    uint32_t mostFactorizations = 60;
     uint32_t mostPasses = 6;  // solutions with limits of friction from the one before
 };
 

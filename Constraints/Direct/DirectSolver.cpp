@@ -1,6 +1,6 @@
 #include <Fulcrum/Constraints/Direct/DirectSolver.h>
 
-#include <Fulcrum/Constraints/Direct/DirectModel.h>
+#include <Fulcrum/Constraints/Direct/InteriorPoint.h>
 
 #include <algorithm>
 #include <limits>
@@ -12,6 +12,15 @@ namespace {
 // A chord step after which the next would not be that much shorter is taken back: from there a new factor needs fewer
 // operations. Lengths of steps, not gradients: those are large wherever a stiff row is a little off.
 constexpr double kChordGain = 4;
+// So many of Newton's steps find the solution, or the next is the interior point method's.
+constexpr uint32_t kNewtonSteps = 4;
+// That method begins with impulses and multipliers of this many tolerances, as speeds, and ends where the residual is
+// half as many: rows are at the right limits then, and Newton's steps end at once. More than that it rarely takes.
+constexpr double kInteriorSpeed = 10000, kInteriorEnd = 5000;
+constexpr uint32_t kInteriorSteps = 40;
+// Its products fall at least to this part of themselves, or are to fall by the cube of what a step to the limits
+// leaves.
+constexpr double kLeastCentering = 1e-4;
 
 double SquareOf(std::span<const Column6> step) {
     double sum = 0;
@@ -29,6 +38,53 @@ void FindStep(const DirectModel& model, const DirectPattern& pattern, const Dire
     SolveFactored(pattern, factor.matrix, step);
 }
 
+// Everything that a search changes.
+struct Search {
+    DirectModel& model;
+    const DirectPattern& pattern;
+    DirectFactor& factor;
+    std::span<Column6> y, step;  // one more than bodies: what is none of them stays at 0
+    std::span<uint32_t> blockOfRow;
+    DirectResult& result;
+
+    // Of the matrix as it was assembled.
+    bool Factor() {
+        factor.isValid = Factorize(pattern, factor.matrix, blockOfRow);
+        result.factorizations += factor.isValid;
+        return factor.isValid;
+    }
+    void FindStep() { fulcrum::FindStep(model, pattern, factor, step.first(pattern.Bodies())); }
+};
+
+// Brings y so near to the solution that Newton's steps find it. Limits of friction are then those of the normal
+// impulses there. False if a factor cannot be made.
+bool ApproachInside(Search& search, const DirectSettings& settings, ScratchArena& scratch) {
+    DirectModel& model = search.model;
+    const BlockMatrix& matrix = search.factor.matrix;
+    std::ranges::fill(search.y, Column6{});
+    InteriorPoint inside(model, scratch);
+    inside.AssembleSoft(matrix, search.y);
+    if (!search.Factor()) return false;
+    search.FindStep();
+    std::ranges::copy(search.step, search.y.begin());
+    inside.Begin(search.y, kInteriorSpeed * settings.tolerance);
+    for (uint32_t i = 0; i < kInteriorSteps && search.result.factorizations < settings.mostFactorizations; ++i) {
+        inside.Assemble(matrix, search.y);
+        if (!search.Factor()) return false;
+        const double mu = inside.MeanProduct(0);
+        inside.Aim(search.y, 0, InteriorPoint::Order::First);
+        search.FindStep();
+        inside.FindChanges(search.step);
+        const double left = std::min(inside.MeanProduct(inside.LargestPart()) / mu, 1.0);
+        inside.Aim(search.y, std::max(left * left * left, kLeastCentering) * mu, InteriorPoint::Order::Second);
+        search.FindStep();
+        inside.FindChanges(search.step);
+        inside.Advance(search.y, search.step, inside.LargestPart());
+        if (model.Evaluate(search.y) < kInteriorEnd * settings.tolerance) break;
+    }
+    return true;
+}
+
 }  // namespace
 
 DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pattern, const DirectSettings& settings,
@@ -40,18 +96,17 @@ DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pa
         result.outcome = Outcome::OutsidePattern;
         return result;
     }
-    // One more than bodies: what is none of them stays at 0.
     const uint32_t bodies = pattern.Bodies();
     const std::span<Column6> y = scratch.Allocate<Column6>(bodies + 1), step = scratch.Allocate<Column6>(bodies + 1),
                              before = scratch.Allocate<Column6>(bodies + 1);
-    const std::span<uint32_t> blockOfRow = scratch.Allocate<uint32_t>(bodies);
+    Search search{model, pattern, factor, y, step, scratch.Allocate<uint32_t>(bodies), result};
     step.back() = {};
     model.Start(y);
     y.back() = {};
 
-    const auto findStep = [&] { FindStep(model, pattern, factor, step.first(bodies)); };
-    bool mayChord = factor.isValid, isMarginRight = true;
-    double chord = 0;  // squared length of the last step, if that was a chord step; else 0
+    bool mayChord = factor.isValid, isMarginRight = true, wasInside = false;
+    double chord = 0;          // squared length of the last step, if that was a chord step; else 0
+    uint32_t newtonSteps = 0;  // of this pass
     result.residual = model.Evaluate(y);
     for (result.passes = 1;;) {
         if (!(result.residual < std::numeric_limits<double>::infinity())) return result;
@@ -71,10 +126,11 @@ DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pa
                 return result;
             }
             ++result.passes;
+            newtonSteps = 0;
             chord = 0;
         }
         if (mayChord) {
-            findStep();
+            search.FindStep();
             const double next = SquareOf(step);
             if (chord == 0 || kChordGain * kChordGain * next <= chord) {
                 std::copy(y.begin(), y.end(), before.begin());
@@ -87,15 +143,22 @@ DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pa
             std::copy(before.begin(), before.end(), y.begin());
             model.Evaluate(y);
         }
-        if (result.factorizations == settings.mostFactorizations) {
+        if (result.factorizations >= settings.mostFactorizations) {
             result.outcome = Outcome::Capped;
             return result;
         }
+        if (newtonSteps == kNewtonSteps && !wasInside) {
+            wasInside = true;
+            if (!ApproachInside(search, settings, scratch)) return result;
+            mayChord = false;
+            chord = 0;
+            result.residual = model.Evaluate(y);
+            continue;
+        }
         model.Assemble(factor.matrix, isMarginRight);
-        factor.isValid = Factorize(pattern, factor.matrix, blockOfRow);
-        if (!factor.isValid) return result;
-        ++result.factorizations;
-        findStep();
+        if (!search.Factor()) return result;
+        ++newtonSteps;
+        search.FindStep();
         const double along = model.SearchAlong(y, step);
         AddTo(y, step, along);
         // A step that is cut short ends where H changes. One that is lengthened has met more resistance in H than there

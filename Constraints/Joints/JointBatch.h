@@ -120,7 +120,7 @@ struct JointBatch {
     uint32_t fixedA, fixedB;          // bit i: the body of lane i is not dynamic
     uint32_t kinematicA, kinematicB;  // bit i: but it moves
     uint32_t high;                    // bit i: of high priority, its error is corrected wholly
-    uint32_t strained;                // bit i: at the start of the step, see JointStrain.h
+    uint32_t strained, pastLimit;     // bit i: at the start of the step, see JointStrain.h
     LinearLock linear;
     AngularLock angular;
     uint32_t rowCount;                   // maximum over the lanes

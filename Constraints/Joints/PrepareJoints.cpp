@@ -247,11 +247,16 @@ void FillRows(JointBatch<N>& batch, const JointRecord* records, JointType* const
     }
 }
 
-// Finds the joints that are strained, see JointStrain.h.
+// Finds the joints that are strained or past their limits, see JointStrain.h.
 template <LinearLock kLinear, AngularLock kAngular, int N>
 void FindStrained(JointBatch<N>& batch, const JointErrors<Wide<N>>& errors) {
     using Real = Wide<N>;
-    batch.strained = 0;
+    batch.strained = batch.pastLimit = 0;
+    for (uint32_t i = 0; i < batch.rowCount; ++i) {
+        const JointRows<N>& row = batch.rows[i];
+        const auto isLimit = row.IsCorrected() & (row.openAbove <= Real(0.0f));
+        batch.pastLimit |= (isLimit & (row.startError < Real(-kStrain))).ToBits();
+    }
     if constexpr (kAngular == AngularLock::None) return;
     const auto squared = [](const auto& error) {
         Real sum(0.0f);

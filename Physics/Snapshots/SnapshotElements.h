@@ -325,8 +325,8 @@ void VisitJointRecord(Stream& s, Record& record) {
 template <class Stream, class Joint>
 bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     auto& [body, next, type, locks, maxRows, neighbors, color, generation, exists, enabled, collideConnected,
-           overridesMass, fixed, isStrained, priority, breakForce, breakTorque, effort, errorTarget, massOverride,
-           userData] = joint;
+           overridesMass, fixed, isStrained, wasPastLimit, priority, breakForce, breakTorque, effort, errorTarget,
+           massOverride, userData] = joint;
     s(generation, exists);
     if (!exists) return false;
     auto& [linear, angular, line, axis] = locks;
@@ -337,7 +337,7 @@ bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     VisitEffort(s, effort);
     if (overridesMass) VisitMassOverride(s, massOverride);
     else if constexpr (!Stream::kWrites) massOverride = {};
-    s(isStrained);
+    s(isStrained, wasPastLimit);
     return true;
 }
 

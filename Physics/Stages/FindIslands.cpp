@@ -139,7 +139,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     };
     VisitEntries(coloring, Kind::Moving, unite);
     VisitEntries(coloring, Kind::Joint, unite);
-    const bool areAnyHard = !hard.open.empty() || !hard.closed.empty();
+    const bool areAnyHard = !hard.open.empty() || !hard.contradicting.empty();
     const std::span<bool> overflows = scratch.Allocate<bool>(coloring.HasOverflow() ? count : 0),
                           hasJoints = scratch.Allocate<bool>(count),
                           hasContacts = scratch.Allocate<bool>(areAnyHard ? count : 0);
@@ -169,14 +169,14 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     const std::span<bool> isHard = scratch.Allocate<bool>(areAnyHard ? count : 0);
     std::ranges::fill(isHard, false);
     for (const uint32_t body : hard.open) isHard[result.rootOf[placeOf(body)]] = true;
-    // Loops only where nothing touches: contacts that are iterated against stiff ones keep heaps awake.
-    for (const uint32_t body : hard.closed) {
+    // Contradictions only where nothing touches: contacts that are iterated against stiff ones keep heaps awake.
+    for (const uint32_t body : hard.contradicting) {
         const uint32_t root = result.rootOf[placeOf(body)];
         isHard[root] = isHard[root] || !hasContacts[root];
     }
     // Whose joints may contradict contacts, or each other.
     const std::span<bool> mayContradict = hasContacts;
-    for (const uint32_t body : hard.closed) mayContradict[result.rootOf[placeOf(body)]] = true;
+    for (const uint32_t body : hard.contradicting) mayContradict[result.rootOf[placeOf(body)]] = true;
     std::optional<PatternFinder> patterns;
     if (areAnyHard) patterns.emplace(bodies, coloring, result.rootOf, isHard, patternWords, scratch);
     groups.assign(1, {.isLarge = true, .hasJoints = jointsOverflow});

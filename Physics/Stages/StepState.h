@@ -75,7 +75,7 @@ struct alignas(64) WorkerFindings {
     uint32_t firstFrozen = ~0u;
     uint32_t sleepCandidates = 0;  // bodies that have been slow for long enough
     bool loadsChanged = false;     // Store: some load level changed, see ContactLoads.h
-    bool strainsBegan = false;     // Store: some joint began to be strained, see JointStrain.h
+    bool strainsBegan = false;     // Store: some joint began to be strained or past a limit, see JointStrain.h
     JointFindings joints;          // Prepare
 };
 

@@ -26,12 +26,16 @@ struct StoreScale {
     const GapScale* gap;    // for joints; null if load levels are off
 };
 
-// Returns whether a joint began to be strained.
+// Returns whether a joint began to be strained or past a limit.
 template <class Batch>
 bool NoteStrained(const Batch& batch, JointStore& joints) {
     bool began = false;
-    for (uint32_t lanes = batch.strained; lanes != 0; lanes &= lanes - 1)
-        began |= !std::exchange(joints.joints[batch.joint[std::countr_zero(lanes)]].isStrained, true);
+    const auto note = [&](uint32_t lanes, bool Joint::*flag) {
+        for (; lanes != 0; lanes &= lanes - 1)
+            began |= !std::exchange(joints.joints[batch.joint[std::countr_zero(lanes)]].*flag, true);
+    };
+    note(batch.strained, &Joint::isStrained);
+    note(batch.pastLimit, &Joint::wasPastLimit);
     return began;
 }
 

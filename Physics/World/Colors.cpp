@@ -51,7 +51,7 @@ void UncolorJoint(JointStore& joints, ConstraintColoring& coloring, uint32_t ind
     const uint32_t moved = coloring.Remove(Coloring::Kind::Joint, EntryOf(joint, index), joint.color);
     joints.joints[moved].color.slot = joint.color.slot;
     joint.color = {};
-    joint.isStrained = false;
+    joint.isStrained = joint.wasPastLimit = false;
 }
 
 void RecolorJointsOf(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t body) {

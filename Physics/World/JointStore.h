@@ -56,7 +56,8 @@ struct Joint {
     bool collideConnected = false;
     bool overridesMass = false;      // massOverride is not none
     bool fixed[2] = {false, false};  // the body is immovable: static, kinematic or frozen
-    bool isStrained = false;         // has been since it was colored, see JointStrain.h
+    // Has been since it was colored, see JointStrain.h.
+    bool isStrained = false, wasPastLimit = false;
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
     LeastEffort effort;     // minimum effort for its island
@@ -90,7 +91,7 @@ public:
     Array<GapLevel> gaps;  // of gaps between anchors
     IndexSet breakable;
     uint32_t targetCount = 0;    // joints with an errorTarget
-    uint64_t strainVersion = 0;  // incremented when a joint begins to be strained
+    uint64_t strainVersion = 0;  // incremented when a joint begins to be strained or past a limit
     Array<MovedBody> moved;      // in the order in which they were moved first; empty after a step
 
     uint32_t Count() const { return count_; }

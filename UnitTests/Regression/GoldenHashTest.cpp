@@ -17,7 +17,7 @@ constexpr uint64_t kGoldenHash = 0x6a86c7901373672cull;
 constexpr uint64_t kGoldenHashOfJoints = 0x640f96146373d975ull;
 constexpr uint64_t kGoldenHashOfSurfaces = 0xc1b9cf06fe6a0b0full;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x2d53a0e4f8b4cef5ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0xe044a2d5d14e8f8dull;
 
 std::string Hex(uint64_t number) {
     char text[24];

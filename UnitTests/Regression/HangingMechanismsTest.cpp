@@ -70,9 +70,8 @@ double LargestGain(Kind kind, int bodies, int substeps, uint32_t seed) {
     return gain;
 }
 
-// Bodies that are at the limits of two joints at once depend so much on each other that iterations leave part of the
-// pushes that hold the joints together. With that part, and pulled about by gaps that their load opens, 2 of 100 pairs
-// on ball joints gained 27 J/kg at 4 substeps and 2 of 100 gained 21 at 16.
+// Bodies that are at the limits of two joints at once depend so much on each other that iterations satisfy one joint at
+// the other's cost: 3 of 200 pairs gained up to 180 J/kg at 4 substeps. What has passed a limit is solved directly.
 void HardlyGainEnergy(Kind kind) {
     for (const int bodies : {2, 5})
         for (const int substeps : {4, 16}) {
@@ -85,7 +84,7 @@ void HardlyGainEnergy(Kind kind) {
                 above += gain > 1;
             }
             EXPECT_LT(worst, 10) << bodies << " bodies, " << substeps << " substeps";
-            EXPECT_LE(above, 4) << bodies << " bodies, " << substeps << " substeps";
+            EXPECT_LE(above, 2) << bodies << " bodies, " << substeps << " substeps";
         }
 }
 
