@@ -57,8 +57,7 @@ struct JointSettings {
     int positionIterations = 0;  // 0..255
     // m, >= 0, in place of AccuracyTarget::jointError: how far apart its anchors may be; 0: as that, infinite: anyhow.
     float errorTarget = 0;
-    // Mass scales of the two bodies in this joint. Joints connected to one with scales are not solved by the direct
-    // tree solver.
+    // Mass scales of the two bodies in this joint. Mechanisms with such a joint are not solved directly.
     MassOverride massOverride{};
     uint64_t userData = 0;
 };

@@ -105,7 +105,7 @@ public:
             if (node.is_number()) ReadReal(node.get<double>(), path, value);
             else if (node == "infinity") value = std::numeric_limits<T>::infinity();
             else if (node == "-infinity") value = -std::numeric_limits<T>::infinity();
-            else Fail(path, "a number", &node);
+            else Fail(path, "a number, or infinity in quotes", &node);
         } else if constexpr (std::is_same_v<T, LockedAxes> || std::is_same_v<T, SensorSees>) {
             uint8_t bits = static_cast<uint8_t>(value);
             Read(node, path, bits);

@@ -225,12 +225,13 @@ void JsonReader::ReadMore(const Json& node, const std::string& path, ShapePtr& v
 void JsonReader::ReadMore(const Json& node, const std::string& path, std::shared_ptr<const Path>& value) {
     JsonReader fields(node, path, document_);
     bool isClosed = value->IsClosed();
-    std::vector<PathPoint> points, usual(value->Points().begin(), value->Points().end());
+    std::vector<PathPoint> points;
     fields.Field("isClosed", isClosed);
     fields.Field("points", points);
     fields.Finish();
     if (error_) return;
-    const auto created = Path::Hermite(points.empty() ? usual : points, isClosed);
+    if (!node.contains("points")) points.assign(value->Points().begin(), value->Points().end());
+    const auto created = Path::Hermite(points, isClosed);
     if (created) value = created.Value();
     else error_ = Error{created.GetError().code, path + ": " + created.GetError().message};
 }

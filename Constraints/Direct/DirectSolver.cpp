@@ -18,8 +18,7 @@ constexpr uint32_t kNewtonSteps = 4;
 // half as many: rows are at the right limits then, and Newton's steps end at once. More than that it rarely takes.
 constexpr double kInteriorSpeed = 10000, kInteriorEnd = 5000;
 constexpr uint32_t kInteriorSteps = 40;
-// Its products fall at least to this part of themselves, or are to fall by the cube of what a step to the limits
-// leaves.
+// A step aims at products that are smaller by the cube of what a step to the limits leaves of them, at least by this.
 constexpr double kLeastCentering = 1e-4;
 
 double SquareOf(std::span<const Column6> step) {
@@ -72,6 +71,7 @@ bool ApproachInside(Search& search, const DirectSettings& settings, ScratchArena
         inside.Assemble(matrix, search.y);
         if (!search.Factor()) return false;
         const double mu = inside.MeanProduct(0);
+        if (!(mu > 0)) return true;
         inside.Aim(search.y, 0, InteriorPoint::Order::First);
         search.FindStep();
         inside.FindChanges(search.step);

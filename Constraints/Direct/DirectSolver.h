@@ -4,7 +4,8 @@
 //
 // The function (DirectProblem.h) is convex, and quadratic where no row changes between its limits and the range between
 // them. A step is H^-1 times the gradient, as far as an exact line search says. Where an old factor of H still makes
-// the steps fall by kChordGain or more, no new one is made (chord steps).
+// the steps fall by kChordGain or more, no new one is made (chord steps). Where many rows change, an interior point
+// method (InteriorPoint.h) brings the search near the solution first.
 //
 // Friction is limited by the normal impulses, which is no convex function. Passes with fixed limits, each with those
 // that the one before has found, agree after a few. Sources: J. Nocedal and S. J. Wright, "Numerical Optimization",

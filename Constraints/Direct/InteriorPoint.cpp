@@ -100,14 +100,14 @@ void InteriorPoint::Assemble(const BlockMatrix& matrix, std::span<const Column6>
             for (int k = 0; k < 3; ++k) in[k].impulse *= patch.limit / patch.limitBefore;
         disc.isUsed = patch.limit > 0 && patch.d > 0;
         if (!disc.isUsed) continue;
-        const double x = in[0].impulse, y2 = in[1].impulse, limit = patch.limit, m = disc.multiplier.value;
-        disc.room = (limit * limit - x * x - y2 * y2) / (2 * limit);
+        const double f1 = in[0].impulse, f2 = in[1].impulse, limit = patch.limit, m = disc.multiplier.value;
+        disc.room = (limit * limit - f1 * f1 - f2 * f2) / (2 * limit);
         // The inverse of (gamma + m / L) I + m / (room L^2) f f^T.
         const double diagonal = 1 / patch.d + m / limit, outer = m / (disc.room * limit * limit);
-        const double determinant = diagonal * (diagonal + outer * (x * x + y2 * y2));
-        disc.xx = (diagonal + outer * y2 * y2) / determinant;
-        disc.yy = (diagonal + outer * x * x) / determinant;
-        disc.xy = -outer * x * y2 / determinant;
+        const double determinant = diagonal * (diagonal + outer * (f1 * f1 + f2 * f2));
+        disc.xx = (diagonal + outer * f2 * f2) / determinant;
+        disc.yy = (diagonal + outer * f1 * f1) / determinant;
+        disc.xy = -outer * f1 * f2 / determinant;
     }
     for (size_t r = 0; r < rows_.size(); ++r) {
         const Row& row = model_.rows_[r];

@@ -45,6 +45,9 @@ struct Job {
     const JsonOutput& json;
     std::string name;  // of the report and of the files in options.out
     std::string description;
+    std::string file{};  // of the scene, if it is of one
+
+    std::string ErrorOf(const Error& error) const { return (file.empty() ? name : file) + ": " + error.message; }
 };
 
 std::filesystem::path OutputOf(const RunOptions& options, const std::string& name, const char* extension) {
@@ -101,7 +104,7 @@ int RunJob(const Job& job) {
             calls = CallRecorder::ToFile(system, job.options.calls.string());
         };
     auto created = SceneWorld::Create(job.scene, input, pool ? &*pool : nullptr);
-    if (!created) return Fail(job.name + ": " + created.GetError().message);
+    if (!created) return Fail(job.ErrorOf(created.GetError()));
     SceneWorld& world = *created.Value();
     if (calls && !*calls) return Fail(calls->GetError().message);
     std::unique_ptr<CallRecorder> callRecorder;  // goes before the world
@@ -123,7 +126,7 @@ int RunJob(const Job& job) {
             if (progress) progress->Advance();
         });
     }();
-    if (!run) return Fail(job.name + ": " + run.GetError().message);
+    if (!run) return Fail(job.ErrorOf(run.GetError()));
     if (callRecorder && !callRecorder->GetStatus()) return Fail(callRecorder->GetStatus().GetError().message);
 
     const std::vector<ReportLine> lines = ReportLines(job.scene, run.Value(), job.input.seed);
@@ -207,7 +210,7 @@ int RunFile(const Command& command, SceneInput input, const JsonOutput& json) {
     RunOptions options = command.options;
     options.dt = options.givenDt.value_or(read.Value().dt);
     input.description = &read.Value();
-    return RunJob({scene, input, options, json, name, scene.description});
+    return RunJob({scene, input, options, json, name, scene.description, command.file.string()});
 }
 
 int Export(const Command& command) {

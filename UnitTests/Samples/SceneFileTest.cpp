@@ -222,6 +222,9 @@ TEST(SceneFile, ErrorsNameThePath) {
         {R"({"fulcrumScene": 1, "joints": [{"kind": "Rope", "bodyA": "world", "bodyB": "world"}]})",
          "joints[0].kind: \"Rope\""},
         {R"({"fulcrumScene": 1, "joints": [{"bodyA": "world", "bodyB": "world"}]})", "joints[0]: kind is missing"},
+        {R"({"fulcrumScene": 1, "joints": [{"kind": "Path", "bodyA": "world", "bodyB": "world", "path": {"points": []}}]})",
+         "path has 0 points; it needs 2"},
+        {R"({"fulcrumScene": 1, "settings": {"gravity": [0, "down", 0]}})", "must be a number, or infinity in quotes"},
         {R"({"fulcrumScene": 1, "ragdolls": [{"file": "no.json"}]})", "no.json"}};
     for (const auto& [text, message] : wrong) {
         const Result<SceneDescription> read = SceneFromJson(text);
