@@ -12,6 +12,8 @@ namespace {
 // A chord step after which the next would not be that much shorter is taken back: from there a new factor needs fewer
 // operations. Lengths of steps, not gradients: those are large wherever a stiff row is a little off.
 constexpr double kChordGain = 4;
+// The next constants only balance the two methods: halved or doubled, each leaves the mean of factorizations of
+// DirectImpactTest's heaps, 29, between 27 and 34, and at most one of the 24 unsolved.
 // So many of Newton's steps find the solution, or the next is the interior point method's.
 constexpr uint32_t kNewtonSteps = 4;
 // That method begins with impulses and multipliers of this many tolerances, as speeds, and ends where the residual is
@@ -56,7 +58,7 @@ struct Search {
 };
 
 // Brings y so near to the solution that Newton's steps find it. Limits of friction are then those of the normal
-// impulses there. False if a factor cannot be made.
+// impulses there, and the model is evaluated. False if a factor cannot be made.
 bool ApproachInside(Search& search, const DirectSettings& settings, ScratchArena& scratch) {
     DirectModel& model = search.model;
     const BlockMatrix& matrix = search.factor.matrix;
@@ -66,9 +68,10 @@ bool ApproachInside(Search& search, const DirectSettings& settings, ScratchArena
     if (!search.Factor()) return false;
     search.FindStep();
     std::ranges::copy(search.step, search.y.begin());
+    search.result.residual = model.Evaluate(search.y);
     inside.Begin(search.y, kInteriorSpeed * settings.tolerance);
     for (uint32_t i = 0; i < kInteriorSteps && search.result.factorizations < settings.mostFactorizations; ++i) {
-        inside.Assemble(matrix, search.y);
+        inside.Assemble(matrix);
         if (!search.Factor()) return false;
         const double mu = inside.MeanProduct(0);
         if (!(mu > 0)) return true;
@@ -80,7 +83,8 @@ bool ApproachInside(Search& search, const DirectSettings& settings, ScratchArena
         search.FindStep();
         inside.FindChanges(search.step);
         inside.Advance(search.y, search.step, inside.LargestPart());
-        if (model.Evaluate(search.y) < kInteriorEnd * settings.tolerance) break;
+        search.result.residual = model.Evaluate(search.y);
+        if (search.result.residual < kInteriorEnd * settings.tolerance) break;
     }
     return true;
 }
@@ -152,7 +156,6 @@ DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pa
             if (!ApproachInside(search, settings, scratch)) return result;
             mayChord = false;
             chord = 0;
-            result.residual = model.Evaluate(y);
             continue;
         }
         model.Assemble(factor.matrix, isMarginRight);

@@ -53,7 +53,6 @@ void InteriorPoint::AssembleSoft(const BlockMatrix& matrix, std::span<const Colu
 void InteriorPoint::Begin(std::span<const Column6> y, double speed) {
     // From y = 0 the step was y.
     model_.FindStepSpeeds(y);
-    model_.FindSpeeds(y);
     const auto begin = [&](Multiplier& multiplier, double value) {
         multiplier = {.value = std::max(std::abs(value), speed), .change = 0, .aim = 0};
     };
@@ -86,8 +85,7 @@ void InteriorPoint::Begin(std::span<const Column6> y, double speed) {
     }
 }
 
-void InteriorPoint::Assemble(const BlockMatrix& matrix, std::span<const Column6> y) {
-    model_.FindSpeeds(y);
+void InteriorPoint::Assemble(const BlockMatrix& matrix) {
     for (size_t i = 0; i < discs_.size(); ++i) {
         Patch& patch = model_.patches_[i];
         Disc& disc = discs_[i];

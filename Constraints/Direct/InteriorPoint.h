@@ -23,12 +23,12 @@ public:
 
     // For the beginning: H and gradient with every row as soft as its bodies are light. y: 0.
     void AssembleSoft(const BlockMatrix& matrix, std::span<const Column6> y);
-    // After the step from there, at which y is: impulses and multipliers of that size, inside their limits. speed: m/s,
-    // of the least of them.
+    // After the step from there, at which y is and the model was evaluated: impulses and multipliers of that size,
+    // inside their limits. speed: m/s, of the least of them.
     void Begin(std::span<const Column6> y, double speed);
 
-    // H. Limits of friction are renewed.
-    void Assemble(const BlockMatrix& matrix, std::span<const Column6> y);
+    // H where the model was evaluated last. Limits of friction are renewed.
+    void Assemble(const BlockMatrix& matrix);
     // Sets the gradient for a step towards products mu, J: to first order, or to second by the changes found last.
     enum class Order { First, Second };
     void Aim(std::span<const Column6> y, double mu, Order order);

@@ -15,6 +15,11 @@ namespace fulcrum {
 
 using DirectColumn = std::array<double, 6>;
 
+// 1/kg or 1/(kg m2), of a body with a diagonal inertia.
+inline double InverseMassOf(const DirectBody& body, size_t k) {
+    return k < 3 ? body.inverseMass : body.inverseInertia[k - 3];
+}
+
 struct IslandOfRows {
     std::vector<DirectBody> bodies;
     std::vector<DirectRow> rows;

@@ -33,7 +33,7 @@ std::vector<double> SolveDense(std::vector<std::vector<double>> a, std::vector<d
     return b;
 }
 
-double MassOf(const DirectBody& body, int k) { return 1 / (k < 3 ? body.inverseMass : body.inverseInertia[k - 3]); }
+double MassOf(const DirectBody& body, int k) { return 1 / InverseMassOf(body, static_cast<size_t>(k)); }
 
 double Energy(const IslandOfRows& island, bool isBefore) {
     double energy = 0;
