@@ -18,6 +18,8 @@ struct IslandEffortReport {
     // body of a joint that asks for more effort, or of a load.
     BodyId culprit;
     uint32_t bodies = 0;  // dynamic ones in it
+    // Solved directly, contacts and joints at once, because of a load: in the settings' substeps.
+    bool isDirect = false;
 };
 
 // What a step made of energy and momentum, summed in double. Measured where SystemSettings::measuresErrors asks for it;

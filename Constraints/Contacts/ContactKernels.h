@@ -164,7 +164,7 @@ struct SurfaceMotion {
 template <int N, bool kFixedB>
 SurfaceMotion<Wide<N>> GatherSurfaceMotion(const ContactBatch<N, kFixedB>& batch, const SurfaceVelocity* surfaces) {
     using Real = Wide<N>;
-    Vec3<Real> linear, angular;
+    Vec3<Real> linear = Vec3<Real>::Zero(), angular = linear;
     for (int i = 0; i < N; ++i)
         for (int k = 0; k < 3; ++k) {
             linear[k].Set(i, surfaces[batch.contact[i]].linear[k]);

@@ -61,6 +61,10 @@ struct DirectProblem {
 
 struct DirectSettings {
     double tolerance = 0;  // m/s, of a body's unbalanced impulse over its mass; of torques over sqrt(mass inertia)
+    // The same with limits of friction by the normal impulses found. If less is left than that, the solution has those of
+    // the pass before: where bodies wedge each other, further passes would part from the solution.
+    double limitTolerance = 0;
+    double speed = 0.1;    // m/s: what bodies gain by gravity; only the way of the search depends on it
     uint32_t mostFactorizations = 60;
     uint32_t mostPasses = 6;  // solutions with limits of friction from the one before
 };
@@ -73,7 +77,7 @@ struct DirectResult {
         OutsidePattern,  // a row is of a pair of bodies that the pattern does not have
     };
     Outcome outcome = Outcome::Failed;
-    // Limits of friction agree with the normal impulses, up to the tolerance; else with those of the pass before.
+    // Limits of friction agree with the normal impulses, up to the tolerances; else with those of the pass before.
     bool limitsAgree = false;
     uint32_t factorizations = 0, chordSteps = 0, passes = 0;
     double residual = 0;  // m/s, as the tolerance

@@ -16,9 +16,9 @@ constexpr double kChordGain = 4;
 // DirectImpactTest's heaps, 29, between 27 and 34, and at most one of the 24 unsolved.
 // So many of Newton's steps find the solution, or the next is the interior point method's.
 constexpr uint32_t kNewtonSteps = 4;
-// That method begins with impulses and multipliers of this many tolerances, as speeds, and ends where the residual is
-// half as many: rows are at the right limits then, and Newton's steps end at once. More than that it rarely takes.
-constexpr double kInteriorSpeed = 10000, kInteriorEnd = 5000;
+// That method begins with impulses and multipliers of this many times the usual speed, and ends where the residual is
+// that part of it: rows are at the right limits then, and Newton's steps end at once. More than that it rarely takes.
+constexpr double kInteriorSpeed = 10, kInteriorEnd = 0.5;
 constexpr uint32_t kInteriorSteps = 40;
 // A step aims at products that are smaller by the cube of what a step to the limits leaves of them, at least by this.
 constexpr double kLeastCentering = 1e-4;
@@ -69,7 +69,7 @@ bool ApproachInside(Search& search, const DirectSettings& settings, ScratchArena
     search.FindStep();
     std::ranges::copy(search.step, search.y.begin());
     search.result.residual = model.Evaluate(search.y);
-    inside.Begin(search.y, kInteriorSpeed * settings.tolerance);
+    inside.Begin(search.y, kInteriorSpeed * settings.speed);
     for (uint32_t i = 0; i < kInteriorSteps && search.result.factorizations < settings.mostFactorizations; ++i) {
         inside.Assemble(matrix);
         if (!search.Factor()) return false;
@@ -84,7 +84,7 @@ bool ApproachInside(Search& search, const DirectSettings& settings, ScratchArena
         inside.FindChanges(search.step);
         inside.Advance(search.y, search.step, inside.LargestPart());
         search.result.residual = model.Evaluate(search.y);
-        if (search.result.residual < kInteriorEnd * settings.tolerance) break;
+        if (search.result.residual < kInteriorEnd * settings.speed) break;
     }
     return true;
 }
@@ -117,9 +117,9 @@ DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pa
         if (result.residual <= settings.tolerance) {
             model.RenewLimits();
             const double residual = model.Evaluate(y);
-            result.limitsAgree = residual <= settings.tolerance;
+            result.limitsAgree = residual <= std::max(settings.limitTolerance, settings.tolerance);
             if (result.limitsAgree || result.passes == settings.mostPasses) {
-                if (result.limitsAgree) {
+                if (residual <= settings.tolerance) {
                     result.residual = residual;
                 } else {
                     model.RestoreLimits();

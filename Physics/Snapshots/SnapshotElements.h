@@ -129,6 +129,7 @@ template <class Stream, class Cold>
 FULCRUM_INLINE_IN_LOOP void VisitOddities(Stream& s, Cold& body, bool isOdd) {
     if constexpr (!Stream::kWrites) {
         body.singleMove = SingleMove::None;
+        body.directMisses = 0;
         body.lastPush = {};
         body.gravity = Vector3::Zero();
         body.isSteady = body.isWorld = body.hasGravity = false;
@@ -143,7 +144,7 @@ FULCRUM_INLINE_IN_LOOP void VisitOddities(Stream& s, Cold& body, bool isOdd) {
         if (!(bits >> 2 & 1)) body.keptMass = nullptr;
         else if (!body.keptMass) body.keptMass = std::make_unique<KeptMass>();
     }
-    s(body.singleMove, body.lastPush.force, body.lastPush.torque);
+    s(body.singleMove, body.directMisses, body.lastPush.force, body.lastPush.torque);
     if (body.hasGravity) s(body.gravity);
     if (!body.keptMass) return;
     auto& [mass, inertia, principalAxes] = *body.keptMass;
@@ -155,13 +156,14 @@ FULCRUM_INLINE_IN_LOOP void VisitOddities(Stream& s, Cold& body, bool isOdd) {
 template <class Stream, class Cold>
 FULCRUM_INLINE_IN_LOOP bool VisitCold(Stream& s, Cold& body) {
     auto& [shape, userData, material, force, torque, penetrationTarget, filter, firstCollider, colliderCount, children,
-           generation, awakePlace, sleepingIsland, continuous, singleMove, keptMass, lastPush, gravity, placed,
-           isSteady, exists, removed, isSensor, isWorld, hasGravity] = body;
+           generation, awakePlace, sleepingIsland, continuous, singleMove, directMisses, keptMass, lastPush, gravity,
+           placed, isSteady, exists, removed, isSensor, isWorld, hasGravity] = body;
     s(generation);
     // Members that few bodies use.
     bool isOdd = false;
     if constexpr (Stream::kWrites)
-        isOdd = singleMove != SingleMove::None || keptMass || !lastPush.IsZero() || isSteady || isWorld || hasGravity;
+        isOdd = singleMove != SingleMove::None || directMisses > 0 || keptMass || !lastPush.IsZero() || isSteady ||
+                isWorld || hasGravity;
     const uint8_t bits = VisitBits(s, exists, placed, removed, isSensor, filter != nullptr, children != nullptr, isOdd);
     if constexpr (!Stream::kWrites) {
         exists = bits & 1;
@@ -401,8 +403,8 @@ void VisitBroken(Stream& s, Broken& joint) {
 
 template <class Stream, class Group>
 void VisitSavedEffort(Stream& s, Group& group) {
-    auto& [body, culprit, effort, stiffness, wantedStiffness] = group;
-    s(body, culprit, stiffness, wantedStiffness);
+    auto& [body, culprit, effort, stiffness, wantedStiffness, isLoaded] = group;
+    s(body, culprit, stiffness, wantedStiffness, isLoaded);
     VisitEffort(s, effort);
 }
 

@@ -239,11 +239,11 @@ void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& color
     std::ranges::sort(described.contacts, {}, &SolvedContact::pair);
     if (!described.areCurrent) return;
     for (const SolverGroup& group : layout.groups) {
-        if (!group.effort.IsAny()) continue;
+        if (!group.effort.IsAny() && !group.isLoaded) continue;
         const auto first = layout.bodies.begin() + group.bodiesBegin, last = layout.bodies.begin() + group.bodiesEnd;
         const bool isFirst = &group == &layout.groups.front();
         described.groups.push_back({isFirst ? ~0u : *std::min_element(first, last), group.culprit, group.effort,
-                                    group.stiffness, group.wantedStiffness});
+                                    group.stiffness, group.wantedStiffness, group.isLoaded});
     }
     std::ranges::sort(described.groups, {}, &SavedEffort::body);
 }

@@ -1,6 +1,7 @@
 #include <Fulcrum/Physics/Stages/DirectIsland.h>
 
 #include <Fulcrum/Constraints/Joints/JointKernels.h>
+#include <Fulcrum/Physics/Stages/DirectRows.h>
 
 #include <Eigen/Core>
 
@@ -11,49 +12,32 @@ namespace fulcrum {
 
 namespace {
 
+using namespace direct;
 using namespace joints;
-using Vector = Vec3<double>;
 
 // Softness of rows that are hard: gamma as a fraction of J M^-1 J^T. A joint gives way to a load by that part of the
 // load's own motion times the ratio of masses, and a heavy one then whirls light links: a ball of 3 10^5 times the mass
 // of its chain's links tears it at 1e-7. Where loops or contacts contradict joints, impulses grow with its inverse.
 constexpr double kFreeSoftness = 1e-8, kSoftness = 1e-6;
-// Unbalanced impulse over mass that is left, as a part of g h.
-constexpr double kTolerance = 1e-4;
-// m/s2, least gravity that counts for both.
-constexpr double kLeastGravity = 1;
-// m or rad: corrections that rounding asks for, of floats at arms of some meters, times `baumgarte`. What is redundant
-// would take them for contradictions, and move far along what it hardly holds.
-constexpr double kRounding = 1e-6;
+// Unbalanced impulse over mass that is left, as a part of g h: with contacts less, since
+// their forces are reported.
+constexpr double kTolerance = 1e-4, kContactTolerance = 1e-5;
+// The same by limits of friction, see DirectSettings.
+constexpr double kLimitTolerance = 1e-2;
+// As a part of g h^2, of corrections of poses.
+constexpr double kPoseTolerance = 1e-3;
+// As a part of g h, what a contact gives way: columns of a hundred boxes lean by ten times as much with three times that.
+// No less than half of what the grid of positions resolves, with the usual `baumgarte` that is where contacts at rest are.
+constexpr double kGive = 1e-4, kLeastGive = 0.1;
+// Of a substep, on average, and as many at least as of so many substeps: more than that take longer than iterations in
+// the substeps that a load asks for. They balance nothing else.
+constexpr uint32_t kMostFactorizations = 8, kLeastSubsteps = 4;
 // Geometric stiffness acts where h^2 k / m exceeds this.
 constexpr double kResolved = 0.3;
-
-template <class Real>
-Vector InDouble(const Vec3<Real>& v, int lane) {
-    return Vector(double{v.x()[lane]}, double{v.y()[lane]}, double{v.z()[lane]});
-}
-
-void Set(double (&j)[6], const Vector& linear, const Vector& angular) {
-    for (int k = 0; k < 3; ++k) {
-        j[k] = linear[k];
-        j[3 + k] = angular[k];
-    }
-}
 
 double Dot6(const double (&j)[6], const Twist<float>& v) {
     return (j[0] * double{v.linear.x()} + j[1] * double{v.linear.y()} + j[2] * double{v.linear.z()}) +
            (j[3] * double{v.angular.x()} + j[4] * double{v.angular.y()} + j[5] * double{v.angular.z()});
-}
-
-// J M^-1 J^T of one body.
-double Response(const DirectBody& body, const double (&j)[6]) {
-    const double* i = body.inverseInertia;
-    double linear = 0;
-    for (int k = 0; k < 3; ++k)
-        if (!(body.lockedAxes >> k & 1u)) linear += j[k] * j[k];
-    const double x = j[3], y = j[4], z = j[5];
-    return body.inverseMass * linear + (i[0] * x * x + i[1] * y * y + i[2] * z * z) +
-           2 * (i[3] * x * y + i[4] * x * z + i[5] * y * z);
 }
 
 // Fills rows from batches, in the order in which Reader reads them.
@@ -143,12 +127,7 @@ public:
         });
     }
 
-    // Rows of tensed distances, whose impulses nobody reads, come after all others.
-    void Finish() {
-        for (size_t i = 0; i < acrossCount_; ++i) rows_[rowCount++] = across_[i];
-    }
-
-    size_t rowCount = 0, stiffnessCount = 0;
+    size_t rowCount = 0, acrossCount = 0, stiffnessCount = 0;
 
 private:
     struct Sides {
@@ -171,9 +150,7 @@ private:
     }
 
     void SetHard(DirectRow& row) const {
-        double k = 0;
-        if (row.a != DirectRow::kNone) k += Response(island_[row.a], row.ja);
-        if (row.b != DirectRow::kNone) k += Response(island_[row.b], row.jb);
+        const double k = ResponseOf(island_, row);
         row.inverseGamma = k > 0 ? 1 / (softness_ * k) : 0;
     }
 
@@ -220,7 +197,7 @@ private:
         if (!(ratio > kResolved)) return;
         const Vector t1 = PerpendicularTo<double>(n), t2 = Cross<double>(n, t1);
         for (const Vector& t : {t1, t2}) {
-            DirectRow& row = across_[acrossCount_++];
+            DirectRow& row = across_[acrossCount++];
             row = DirectRow{};
             row.a = along.a;
             row.b = along.b;
@@ -236,7 +213,6 @@ private:
     std::span<DirectRow> rows_, across_;
     std::span<DirectStiffness> stiffness_;
     double h_, softness_;
-    size_t acrossCount_ = 0;
 };
 
 // Writes impulses back to the batches, in the order of Filler.
@@ -325,8 +301,9 @@ DirectIsland::DirectIsland(BodyStore& bodies, SolverLayout& layout, const Solver
       layout_(layout),
       group_(group),
       h_(double{h}),
-      gravity_(std::max(double{gravity}, kLeastGravity)),
+      speed_(std::max(double{gravity}, kLeastGravity) * h_),
       localOf_(localOf),
+      contacts_(bodies, layout, group, localOf, h_, std::max(kGive * speed_, kLeastGive * kPositionGrid / h_), scratch),
       pattern_(layout.PatternOf(group)),
       factor_(MakeDirectFactor(pattern_, scratch)) {
     size_t lanes = 0, rows = 0;
@@ -334,11 +311,13 @@ DirectIsland::DirectIsland(BodyStore& bodies, SolverLayout& layout, const Solver
         lanes += static_cast<size_t>(batch.count);
         rows += static_cast<size_t>(batch.count) * batch.rowCount;
     });
+    hasJoints_ = lanes > 0;
+    tolerance_ = (contacts_.AreAny() ? kContactTolerance : kTolerance) * speed_;
     const size_t count = group.bodiesEnd - group.bodiesBegin;
     island_ = scratch.Allocate<DirectBody>(count);
-    rows_ = scratch.Allocate<DirectRow>(6 * lanes + 3 * rows);
+    rows_ = scratch.Allocate<DirectRow>(6 * lanes + 3 * rows + contacts_.MostRows());
     across_ = scratch.Allocate<DirectRow>(2 * rows);
-    corrections_ = scratch.Allocate<DirectRow>(6 * lanes);
+    corrections_ = scratch.Allocate<DirectRow>(6 * lanes + contacts_.MostRows());
     stiffness_ = scratch.Allocate<DirectStiffness>(2 * lanes);
     solved_ = scratch.Allocate<DirectVelocity>(count);
     places_ = scratch.Allocate<Twist<float>>(count);
@@ -362,22 +341,28 @@ void DirectIsland::SetBodies(From from) {
     }
 }
 
-bool DirectIsland::SolveVelocities(From from, ScratchArena& scratch) {
-    SetBodies(from);
+size_t DirectIsland::AddJoints() {
     Filler filler(bodies_, localOf_, island_, rows_, across_, stiffness_, h_,
                   group_.mayContradict ? kSoftness : kFreeSoftness);
     VisitJoints(layout_, group_, [&](JointBatch<kLanes>& batch) { filler.Add(batch); });
-    filler.Finish();
-    const DirectProblem problem{island_, rows_.first(filler.rowCount), {}, stiffness_.first(filler.stiffnessCount)};
-    if (from == From::Current)
-        for (const DirectRow& row : problem.rows) {
-            if (row.a != DirectRow::kNone) TakeBack(island_[row.a], row.ja, row.impulse);
-            if (row.b != DirectRow::kNone) TakeBack(island_[row.b], row.jb, row.impulse);
-        }
-    const DirectSettings how{.tolerance = kTolerance * gravity_ * h_};
+    acrossCount_ = filler.acrossCount;
+    stiffnessCount_ = filler.stiffnessCount;
+    return filler.rowCount;
+}
+
+bool DirectIsland::Solve(std::span<DirectRow> rows, ScratchArena& scratch) {
+    const DirectProblem problem{island_, rows, isWhole_ ? contacts_.Patches() : std::span<const DirectPatch>(),
+                                stiffness_.first(stiffnessCount_)};
+    // Less for bodies so small that they would move by much of their size.
+    const double most = isWhole_ ? std::min(tolerance_, 2e-4 * contacts_.LeastSize() / h_) : tolerance_;
+    const DirectSettings how{.tolerance = most, .limitTolerance = kLimitTolerance * speed_, .speed = speed_};
     const DirectResult result = SolveDirectly(problem, pattern_, how, factor_, solved_, scratch);
     isFactorCurrent_ |= result.factorizations > 0;
-    if (result.outcome != DirectResult::Outcome::Solved) return false;
+    factorizations_ += result.factorizations;
+    return result.outcome == DirectResult::Outcome::Solved;
+}
+
+void DirectIsland::WriteVelocities() {
     for (size_t i = 0; i < island_.size(); ++i) {
         BodyState& state = bodies_.states[layout_.bodies[group_.bodiesBegin + i]];
         for (int k = 0; k < 3; ++k) {
@@ -385,8 +370,52 @@ bool DirectIsland::SolveVelocities(From from, ScratchArena& scratch) {
             state.angularVelocity[k] = static_cast<float>(solved_[i].v[3 + k]);
         }
     }
-    Reader reader(problem.rows);
+    Reader reader(rows_);
     VisitJoints(layout_, group_, [&](JointBatch<kLanes>& batch) { reader.Read(batch); });
+}
+
+bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
+    isWhole_ = false;
+    SetBodies(from);
+    size_t count = AddJoints();
+    for (const DirectRow& row : across_.first(acrossCount_)) rows_[count++] = row;
+    const std::span<DirectRow> rows = rows_.first(count);
+    if (from == From::Current)
+        for (const DirectRow& row : rows) {
+            if (row.a != DirectRow::kNone) TakeBack(island_[row.a], row.ja, row.impulse);
+            if (row.b != DirectRow::kNone) TakeBack(island_[row.b], row.jb, row.impulse);
+        }
+    if (!Solve(rows, scratch)) return false;
+    WriteVelocities();
+    return true;
+}
+
+bool DirectIsland::NoteMisses() {
+    const bool isMiss = factorizations_ > kMostFactorizations * std::max(solutions_, kLeastSubsteps);
+    bool areMany = false;
+    for (const uint32_t body : std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size())) {
+        uint8_t& misses = bodies_.cold[body].directMisses;
+        if (isMiss) ++misses;
+        else if (misses > 0) --misses;
+        areMany |= misses == kMostMisses;
+    }
+    return areMany;
+}
+
+bool DirectIsland::SolveAll(const ContactSolveSettings& settings, ScratchArena& scratch) {
+    isWhole_ = true;
+    ++solutions_;
+    SetBodies(From::Unconstrained);
+    size_t count = AddJoints();
+    if (!contacts_.AddRows(island_, settings, rows_, count)) return false;
+    for (const DirectRow& row : across_.first(acrossCount_)) rows_[count++] = row;
+    const std::span<DirectRow> rows = rows_.first(count);
+    // Where impulses turn out to be larger than the last ones, once more with rows as stiff as they ask for.
+    do {
+        if (!Solve(rows, scratch)) return false;
+    } while (contacts_.Stiffen(rows));
+    WriteVelocities();
+    contacts_.ReadImpulses(rows);
     return true;
 }
 
@@ -399,12 +428,13 @@ Twist<float> DisplacementOf(const BodyState& state) {
 
 }  // namespace
 
-void DirectIsland::NotePlaces() {
+void DirectIsland::NotePlaces(const ContactSolveSettings& settings) {
+    if (isWhole_) contacts_.UpdateSeparations(settings);
     for (size_t i = 0; i < places_.size(); ++i)
         places_[i] = DisplacementOf(bodies_.states[layout_.bodies[group_.bodiesBegin + i]]);
 }
 
-void DirectIsland::CorrectPoses(ScratchArena& scratch) {
+void DirectIsland::CorrectPoses(const ContactSolveSettings& settings, ScratchArena& scratch) {
     // With the Jacobians of the velocities, which must be those of the factor: others would find what it does not hold.
     factor_.isValid &= isFactorCurrent_;
     isFactorCurrent_ = false;
@@ -435,8 +465,16 @@ void DirectIsland::CorrectPoses(ScratchArena& scratch) {
             island_[i].velocity[3 + k] = double{now.angular[k] - places_[i].angular[k]};
         }
     }
+    const bool isWanted =
+        isWhole_ ? contacts_.AddCorrections(rows_, settings, corrections_, count) || hasJoints_ : hasJoints_;
+    if (!isWanted) return;
     const DirectProblem problem{island_, corrections_.first(count), {}, {}};
-    if (!StepDirectly(problem, pattern_, factor_, solved_, scratch)) return;
+    const DirectSettings how{.tolerance = kPoseTolerance * speed_ * h_, .speed = speed_ * h_};
+    const bool isFound =
+        isWhole_ ? SolveDirectly(problem, pattern_, how, factor_, solved_, scratch).outcome ==
+                       DirectResult::Outcome::Solved
+                 : StepDirectly(problem, pattern_, factor_, solved_, scratch);
+    if (!isFound) return;
     for (size_t i = 0; i < places_.size(); ++i) {
         BodyState& state = bodies_.states[layout_.bodies[group_.bodiesBegin + i]];
         const double *to = solved_[i].v, *from = island_[i].velocity;
@@ -456,6 +494,7 @@ void DirectIsland::CorrectPoses(ScratchArena& scratch) {
         state.halfTurn[0] = half.x();
         state.halfTurn[1] = half.y();
     }
+    if (isWhole_) contacts_.UpdateSeparations(settings);
 }
 
 }  // namespace fulcrum

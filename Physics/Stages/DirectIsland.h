@@ -1,10 +1,12 @@
-// An island whose joints are solved directly (Constraints/Direct), between its batches and the direct solver: fills the
-// rows from the batches, writes velocities and impulses back, and moves the poses by what the joints are off. Contacts
-// are iterated: to them all joints together are one more constraint. Used by Solve, one thread per island. The group of
-// the island has no other; its joints are all in JointBatches.
+// An island that is solved directly (Constraints/Direct): between its batches and the direct solver. Fills the rows from
+// the batches, writes velocities and impulses back, and moves the poses by what joints and contacts are off. Either all
+// constraints are solved together, or the joints alone, where contacts bounce or cannot be rows: to these iterations all
+// joints together are one more constraint. Used by Solve, one thread per island. The group of the island has no other;
+// its joints are all in JointBatches.
 #pragma once
 
 #include <Fulcrum/Constraints/Direct/DirectSolver.h>
+#include <Fulcrum/Physics/Stages/DirectContacts.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
 
@@ -12,36 +14,56 @@ namespace fulcrum {
 
 class DirectIsland {
 public:
-    // After Prepare. h: s, of a substep. localOf: by body of the world, to work with; may be shared with other islands.
-    // gravity: m/s2.
+    // h: s, of a substep. localOf: by body of the world, to work with; may be shared with other islands. gravity: m/s2.
     DirectIsland(BodyStore& bodies, SolverLayout& layout, const SolverGroup& group, float h, float gravity,
                  std::span<uint32_t> localOf, ScratchArena& scratch);
+
+    const SolverGroup& Group() const { return group_; }
+    bool HasJoints() const { return hasJoints_; }
+    bool HasContacts() const { return contacts_.AreAny(); }
+    // After Prepare: DirectContacts::CanBeRows.
+    bool MayBeWhole(const ContactRecord* records) const { return contacts_.CanBeRows(records); }
+
+    // Whether it is not for direct solutions with contacts: those of so many steps took long.
+    static constexpr uint8_t kMostMisses = 8;
+    // At the end of the step, where it was solved whole: counts those steps, of all bodies. True if they are so many.
+    bool NoteMisses();
 
     // What the velocities are without the joints: the unconstrained ones, or, where there are contacts, too, the
     // current ones less the change by the last impulses.
     enum class From { Unconstrained, Current };
 
     // The velocities and impulses of all joints. False if that takes too long: then both are as before.
-    bool SolveVelocities(From from, ScratchArena& scratch);
+    bool SolveJoints(From from, ScratchArena& scratch);
+    // The same of all constraints. False if a contact bounces, too.
+    bool SolveAll(const ContactSolveSettings& settings, ScratchArena& scratch);
 
-    // A position iteration of joints: before that of single rows and contacts notes where the bodies are. After it
-    // moves them so that J times the change of pose of both is minus the bias of the locks. Adds no velocity.
-    void NotePlaces();
-    void CorrectPoses(ScratchArena& scratch);
+    // A position iteration: before that of single rows notes where the bodies are. After it moves them so that J times
+    // the change of pose of both is minus the bias of the locks. The same for contacts after SolveAll. Adds no velocity.
+    void NotePlaces(const ContactSolveSettings& settings);
+    void CorrectPoses(const ContactSolveSettings& settings, ScratchArena& scratch);
 
 private:
     void SetBodies(From from);
+    size_t AddJoints();
+    bool Solve(std::span<DirectRow> rows, ScratchArena& scratch);
+    void WriteVelocities();
 
     BodyStore& bodies_;
     SolverLayout& layout_;
     const SolverGroup& group_;
-    double h_, gravity_;
+    double h_, speed_, tolerance_ = 0;
     std::span<uint32_t> localOf_;
+    DirectContacts contacts_;
     DirectPattern pattern_;
     DirectFactor factor_;
+    bool hasJoints_ = false;
+    bool isWhole_ = false;          // all constraints were solved together last
+    uint32_t solutions_ = 0, factorizations_ = 0;  // of the whole, in this step
     bool isFactorCurrent_ = false;  // made with the Jacobians of this substep
     std::span<DirectBody> island_;
     std::span<DirectRow> rows_, across_, corrections_;
+    size_t acrossCount_ = 0, stiffnessCount_ = 0;
     std::span<DirectStiffness> stiffness_;
     std::span<DirectVelocity> solved_;
     std::span<Twist<float>> places_;

@@ -1,5 +1,6 @@
 #include <Fulcrum/Physics/Stages/FindIslands.h>
 
+#include <Fulcrum/Physics/Stages/DirectIsland.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/IslandEfforts.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
@@ -37,8 +38,12 @@ std::span<const IslandEffort> EffortsOf(const Array<SavedEffort>& saved, const B
                                         ScratchArena& scratch) {
     std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(bodies.awake.size());
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
-    for (const SavedEffort& group : saved)
-        if (group.body != ~0u) efforts[sets.Find(bodies.cold[group.body].awakePlace)].least = group.effort;
+    for (const SavedEffort& group : saved) {
+        if (group.body == ~0u) continue;
+        IslandEffort& effort = efforts[sets.Find(bodies.cold[group.body].awakePlace)];
+        effort.least = effort.asked = group.effort;
+        effort.isLoaded = group.isLoaded;
+    }
     return efforts;
 }
 
@@ -54,11 +59,31 @@ void SetEfforts(const Array<SavedEffort>& saved, const BodyStore& bodies, const 
     }
 }
 
+// By root.
+struct IslandTraits {
+    bool overflows : 1 = false;  // some constraint has no color
+    bool hasJoints : 1 = false, hasContacts : 1 = false;
+    bool hasHardJoints : 1 = false;  // they are solved directly, whatever touches them
+    bool isAnchored : 1 = false;     // joints that may contradict each other hold on to something immovable
+    bool mayContradict : 1 = false;  // some joints may contradict each other
+    bool isIterated : 1 = false;     // contacts are not solved directly
+    bool isLoaded : 1 = false;       // they are, because of loads
+    bool isHard : 1 = false;         // some are solved directly, where that costs little
+};
+
+// Not bodies created inside each other, those with locked axes, which gained energy, and those of which solutions with
+// contacts took long, until they fall asleep.
+bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body) {
+    const BodyDynamics& d = bodies.dynamics[body];
+    return !d.crowded && d.lockedAxes == LockedAxes::None &&
+           bodies.cold[body].directMisses < DirectIsland::kMostMisses;
+}
+
 // Finds the patterns of hard islands, where these cost little.
 class PatternFinder {
 public:
     PatternFinder(const BodyStore& bodies, const ConstraintColoring& coloring, std::span<const uint32_t> rootOf,
-                  std::span<const bool> isHard, Array<uint32_t>& words, ScratchArena& scratch)
+                  std::span<const IslandTraits> traits, Array<uint32_t>& words, ScratchArena& scratch)
         : words_(words),
           scratch_(scratch),
           begins_(scratch.Allocate<uint32_t>(rootOf.size() + 1)),
@@ -68,7 +93,7 @@ public:
         std::ranges::fill(memberBegins_, 0u);
         const auto visitMembers = [&](auto&& member) {
             for (size_t i = 0; i < rootOf.size(); ++i)
-                if (isHard[rootOf[i]]) member(rootOf[i], bodies.awake[i]);
+                if (traits[rootOf[i]].isHard) member(rootOf[i], bodies.awake[i]);
         };
         visitMembers([&](uint32_t root, uint32_t) { ++memberBegins_[root]; });
         members_ = scratch.Allocate<uint32_t>(ExclusivePrefixSum(memberBegins_));
@@ -79,7 +104,7 @@ public:
                 VisitEntries(coloring, kind, [&](uint32_t, const Entry& entry) {
                     if (entry.fixedA || entry.fixedB) return;
                     const uint32_t root = rootOf[bodies.cold[entry.bodyA].awakePlace];
-                    if (isHard[root]) edge(root, DirectEdge{entry.bodyA, entry.bodyB});
+                    if (traits[root].isHard) edge(root, DirectEdge{entry.bodyA, entry.bodyB});
                 });
         };
         visit([&](uint32_t root, const DirectEdge&) { ++begins_[root]; });
@@ -139,23 +164,30 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     };
     VisitEntries(coloring, Kind::Moving, unite);
     VisitEntries(coloring, Kind::Joint, unite);
-    const bool areAnyHard = !hard.open.empty() || !hard.contradicting.empty();
-    const std::span<bool> overflows = scratch.Allocate<bool>(coloring.HasOverflow() ? count : 0),
-                          hasJoints = scratch.Allocate<bool>(count),
-                          hasContacts = scratch.Allocate<bool>(areAnyHard ? count : 0);
-    std::fill(overflows.begin(), overflows.end(), false);
-    std::fill(hasJoints.begin(), hasJoints.end(), false);
-    std::fill(hasContacts.begin(), hasContacts.end(), false);
+    const std::span<IslandTraits> traits = scratch.Allocate<IslandTraits>(count);
+    std::ranges::fill(traits, IslandTraits{});
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t body = bodies.awake[i];
+        if (MayBeSolvedDirectly(bodies, body)) continue;
+        traits[sets.Find(i)].isIterated = true;
+    }
     for (Kind kind : {Kind::Moving, Kind::Fixed, Kind::Joint})
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
             const uint32_t root = sets.Find(placeOf(MovingBodyOf(entry)));
             ++sizes[root];
-            if (c == kColors) overflows[root] = true;
-            if (kind == Kind::Joint) hasJoints[root] = true;
-            else if (!hasContacts.empty()) hasContacts[root] = true;
+            IslandTraits& its = traits[root];
+            if (c == kColors) its.overflows = true;
+            if (kind == Kind::Joint) {
+                its.hasJoints = true;
+                return;
+            }
+            its.hasContacts = true;
+            if (!pairs.massOverrides.empty() && pairs.records[entry.constraint].Has(ContactRecord::kMassOverride))
+                its.isIterated = true;
         });
     bool jointsOverflow = false;  // constraints without a color are solved with the first group
-    for (size_t i = 0; i < overflows.size(); ++i) jointsOverflow |= overflows[i] && hasJoints[i];
+    if (coloring.HasOverflow())
+        for (const IslandTraits& its : traits) jointsOverflow |= its.overflows && its.hasJoints;
     const int usual = step.settings.solver.substeps;
     const std::span<const IslandEffort> efforts =
         saved ? EffortsOf(*saved, bodies, sets, scratch)
@@ -165,20 +197,24 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     result.groupOf = scratch.Allocate<uint32_t>(count);
     result.rootOf = scratch.Allocate<uint32_t>(count);
     for (uint32_t i = 0; i < count; ++i) result.rootOf[i] = sets.Find(i);
-    // Bodies of hard islands by root, ascending.
-    const std::span<bool> isHard = scratch.Allocate<bool>(areAnyHard ? count : 0);
-    std::ranges::fill(isHard, false);
-    for (const uint32_t body : hard.open) isHard[result.rootOf[placeOf(body)]] = true;
-    // Contradictions only where nothing touches: contacts that are iterated against stiff ones keep heaps awake.
+    for (const uint32_t body : hard.open) traits[result.rootOf[placeOf(body)]].hasHardJoints = true;
+    // Joints alone only where nothing touches: contacts that are iterated against stiff ones that contradict each other
+    // keep heaps awake. Those of machines, bridges are solved together with them.
     for (const uint32_t body : hard.contradicting) {
-        const uint32_t root = result.rootOf[placeOf(body)];
-        isHard[root] = isHard[root] || !hasContacts[root];
+        IslandTraits& its = traits[result.rootOf[placeOf(body)]];
+        its.mayContradict = true;
+        if (!its.hasContacts) its.hasHardJoints = true;
     }
-    // Whose joints may contradict contacts, or each other.
-    const std::span<bool> mayContradict = hasContacts;
-    for (const uint32_t body : hard.contradicting) mayContradict[result.rootOf[placeOf(body)]] = true;
+    for (const uint32_t body : hard.anchored) traits[result.rootOf[placeOf(body)]].isAnchored = true;
+    bool areAnyHard = false;
+    for (uint32_t i = 0; i < count; ++i) {
+        IslandTraits& its = traits[i];
+        its.isLoaded = efforts[i].isLoaded && !efforts[i].hasGaps && !its.isIterated;
+        its.isHard = (its.isLoaded || its.hasHardJoints || (its.isAnchored && !its.isIterated)) && !its.overflows;
+        areAnyHard |= its.isHard;
+    }
     std::optional<PatternFinder> patterns;
-    if (areAnyHard) patterns.emplace(bodies, coloring, result.rootOf, isHard, patternWords, scratch);
+    if (areAnyHard) patterns.emplace(bodies, coloring, result.rootOf, traits, patternWords, scratch);
     groups.assign(1, {.isLarge = true, .hasJoints = jointsOverflow});
     // The groups that small islands are added to, those without joints and with joints.
     struct OpenGroup {
@@ -194,31 +230,36 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         result.groupOf[i] = Islands::kNone;
         if (sizes[i] == 0) continue;
         ++result.islands;
-        const bool isOverflowing = !overflows.empty() && overflows[i];
-        const bool large = sizes[i] >= kLargeIsland || isOverflowing;
+        const IslandTraits& its = traits[i];
+        const bool large = sizes[i] >= kLargeIsland || its.overflows;
         SolverGroup own;
-        if (areAnyHard && isHard[i] && !isOverflowing) patterns->Find(i, own);
-        own.mayContradict = own.isDirect && mayContradict[i];
-        const IslandEffort& effort = efforts[i];
-        const bool differs = large && hasJoints[i] != jointsOverflow;  // from the first group
+        if (its.isHard) patterns->Find(i, own);
+        IslandEffort effort = efforts[i];
+        if (own.isDirect) {
+            own.mayContradict = its.mayContradict || its.hasContacts;
+            own.solvesJoints = its.hasHardJoints;
+            own.isLoaded = its.isLoaded;
+            if (own.isLoaded) effort.least = effort.asked;
+        }
+        const bool differs = large && its.hasJoints != jointsOverflow;  // from the first group
         // A group of one island is solved by one worker: too slow for a large island, unless required.
-        if (!isOverflowing && (effort.least.IsAny() || own.isDirect || differs)) {
+        if (!its.overflows && (effort.least.IsAny() || own.isDirect || differs)) {
             result.groupOf[i] = static_cast<uint32_t>(groups.size());
             own.isLarge = large && !own.isDirect;
-            own.hasJoints = hasJoints[i];
+            own.hasJoints = its.hasJoints || own.isDirect;
             SetEffort(own, effort, usual);
             groups.push_back(own);
             continue;
         }
         if (large) {
             result.groupOf[i] = Islands::kLargeGroup;
-            if (isOverflowing && effort.least.IsAny()) Raise(overflowing, effort);
+            if (its.overflows && effort.least.IsAny()) Raise(overflowing, effort);
             continue;
         }
-        OpenGroup& to = open[hasJoints[i]];
+        OpenGroup& to = open[its.hasJoints];
         if (to.constraints >= kSmallGroup) {
             to = {static_cast<uint32_t>(groups.size()), 0};
-            groups.push_back({.hasJoints = hasJoints[i]});
+            groups.push_back({.hasJoints = its.hasJoints});
         }
         result.groupOf[i] = to.group;
         to.constraints += sizes[i];

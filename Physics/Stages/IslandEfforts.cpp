@@ -302,7 +302,10 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         const Joint& joint = joints.joints[entry.constraint];
         if (!joint.effort.IsAny() && !adaptsToGaps) return;
         const uint32_t body = MovingBodyOf(entry), root = sets.Find(bodies.cold[body].awakePlace);
-        if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
+        if (joint.effort.IsAny()) {
+            RaiseLeast(efforts[root], joint.effort, body);
+            efforts[root].asked = efforts[root].least;
+        }
         const LoadLevel& gap = joints.gaps[entry.constraint].load;
         if (!adaptsToGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
         const float need = ExcessOfLevel(gap.level);
@@ -323,6 +326,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         efforts[i].longer = std::sqrt(softer / std::clamp(0.5f * need, 1.0f, softer));
         RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;
+        efforts[i].hasGaps = needs[i].isStiff;
         efforts[i].stiffness = needs[i].stiffness;
     }
     return efforts;

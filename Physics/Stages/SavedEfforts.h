@@ -11,12 +11,13 @@
 
 namespace fulcrum {
 
-// A group with an effort of its own, that of one island.
+// A group with an effort of its own, or one that is solved directly because of loads: that of one island.
 struct SavedEffort {
     uint32_t body = ~0u;  // the island's lowest index; ~0u: the first group, of large islands
     uint32_t culprit = ~0u;
     LeastEffort effort{};
     uint8_t stiffness = 0, wantedStiffness = 0;  // see SolverGroup
+    bool isLoaded = false;                       // likewise
 };
 
 // A contact of a group with substeps of its own, and their number.

@@ -137,9 +137,7 @@ public:
     void SolveDirectlyWith(DirectIsland& island, ScratchArena& scratch) {
         direct_ = &island;
         directScratch_ = &scratch;
-        VisitBatches(layout_, group_, [&](const auto& batch) {
-            if constexpr (requires { batch.frictionImpulse; }) hasContacts_ = true;
-        });
+        mayBeWhole_ = island.HasContacts() && island.MayBeWhole(stores_.pairs.records.data());
     }
 
     // A group of small islands: one worker, from beginning to end.
@@ -162,14 +160,17 @@ public:
                 continue;
             }
             if (direct_) SolveDirectly(verb, substep);
-            if (isSolved_ && IsCorrection(verb)) direct_->NotePlaces();
+            const bool corrects = isSolved_ && IsCorrection(verb);
+            if (corrects) direct_->NotePlaces(ContactSettingsAt(substep, 1));
             for (uint32_t c = group_.colorsBegin; c < group_.colorsEnd; ++c)
                 RunBatches({verb, substep, 0}, layout_.colors[c], 0, layout_.colors[c].Count(), findings);
-            if (isSolved_ && IsCorrection(verb)) {
+            if (corrects) {
                 directScratch_->Reset();
-                direct_->CorrectPoses(*directScratch_);
+                direct_->CorrectPoses(ContactSettingsAt(substep, 1), *directScratch_);
+                if (isWhole_) NoteOutdatedOfGroup(substep);
             }
         }
+        if (mayBeWhole_) findings.loadsChanged |= direct_->NoteMisses();
     }
 
 private:
@@ -225,23 +226,38 @@ private:
         for (const uint32_t body : bodies) starts_[body] = {};
     }
 
-    // Before the batches of a group that is solved directly: solves its joints, which otherwise are iterated. Without
-    // contacts once a substep is enough.
+    // Before the batches of a group that is solved directly. Everything at once, or, where a contact bounces or that
+    // takes too long, the joints, before contacts are iterated: once a substep is enough without contacts.
     void SolveDirectly(Verb verb, uint8_t substep) {
-        if (!SolvesJoints(verb) || (isSolved_ && !hasContacts_ && verb != Verb::FirstVelocities)) return;
+        if (!SolvesJoints(verb)) return;
+        const bool isFirst = verb == Verb::FirstVelocities;
+        const bool hasContacts = direct_->HasContacts();
+        if (isFirst) isWhole_ = mayBeWhole_;
+        else if (isWhole_ || (isSolved_ && !hasContacts)) return;
         const auto solve = [&] {
             directScratch_->Reset();
-            return direct_->SolveVelocities(
-                hasContacts_ ? DirectIsland::From::Current : DirectIsland::From::Unconstrained, *directScratch_);
+            if (isWhole_) return direct_->SolveAll(ContactSettingsAt(substep, 0.5f), *directScratch_);
+            return direct_->SolveJoints(
+                hasContacts ? DirectIsland::From::Current : DirectIsland::From::Unconstrained, *directScratch_);
         };
         isSolved_ = solve();
-        if (!isSolved_ || verb != Verb::FirstVelocities) return;
+        if (isWhole_ && !isSolved_) {
+            isWhole_ = false;
+            isSolved_ = direct_->HasJoints() && group_.solvesJoints && solve();
+        }
+        if (!isSolved_ || !isFirst || !direct_->HasJoints()) return;
         // Joints have aimed by the velocities of the last substep: once more by those found.
         VisitBatches(layout_, group_, [&](auto& batch) {
             if constexpr (requires { batch.rowCount; })
                 AimJoints(batch, bodies_.states.data(), JointSettingsAt(substep));
         });
         solve();
+    }
+
+    void NoteOutdatedOfGroup(uint8_t substep) {
+        VisitBatches(layout_, group_, [&](const auto& batch) {
+            if constexpr (requires { batch.frictionImpulse; }) NoteOutdated(batch, substep);
+        });
     }
 
     // Adds the warm start to the velocities, scaled by island.
@@ -292,6 +308,7 @@ private:
     void RunBatch(Verb verb, uint8_t substep, const JointSolveSettings&, ContactBatch<N, kFixedB>& batch,
                   WorkerFindings& findings) {
         BodyState* states = bodies_.states.data();
+        if (isWhole_ && (SolvesJoints(verb) || IsCorrection(verb))) return;
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             case Verb::AddWarmStart: AddWarmStart(batch, starts_, ContactSettingsAt(substep, 0.5f)); break;
@@ -313,7 +330,7 @@ private:
             case Verb::Separations:
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 NoteOutdated(batch, substep);
-                local_.CheckDepths(batch, substep);
+                if (!isWhole_) local_.CheckDepths(batch, substep);
                 break;
             case Verb::StoreOutdated:
                 if (MayBeFoundAgain(batch)) StoreContacts(batch, stores_.pairs.records.data());
@@ -446,8 +463,9 @@ private:
     LocalIterations local_;
     DirectIsland* direct_ = nullptr;  // if the group is solved directly
     ScratchArena* directScratch_ = nullptr;
-    bool hasContacts_ = false;  // then
-    bool isSolved_ = false;     // directly, in the last pass
+    bool mayBeWhole_ = false;  // then: its contacts may be solved directly, too
+    bool isSolved_ = false;    // joints directly, in the last pass
+    bool isWhole_ = false;     // everything, in this substep
 };
 
 // Verbs that a group needs because of its joints.

@@ -20,7 +20,7 @@ namespace fulcrum {
 // island that is solved directly, one with an effort of its own, or a large one with joints, has a group of its own.
 struct SolverGroup {
     bool isLarge = false;                     // solved color by color on all workers
-    bool hasJoints = false;                   // all islands of it have joints: see Solve
+    bool hasJoints = false;                   // all islands of it have joints, or it is solved directly: see Solve
     uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
     uint32_t bodiesBegin = 0, bodiesEnd = 0;  // into SolverLayout::bodies
     LeastEffort effort{};                     // minimum effort, if more than the system's
@@ -30,6 +30,8 @@ struct SolverGroup {
     // bodies that have sunk with softer rows. 0: the stiffness of the actual substeps.
     uint8_t stiffness = 0, wantedStiffness = 0;
     bool isDirect = false;                         // one island, solved directly: see DirectIsland.h
+    bool isLoaded = false;                         // then: because of loads, with the effort of the system's settings
+    bool solvesJoints = false;                     // then: also where its contacts are iterated
     bool mayContradict = false;                    // then: it has loops of joints, or contacts
     uint32_t patternBegin = 0, patternBlocks = 0;  // then: into SolverLayout::patternWords; DirectPattern::Blocks
     bool IsOwn() const { return isDirect || effort.IsAny(); }

@@ -261,11 +261,11 @@ const char* StageName(int stage) { return kStages[stage].name; }
 void VisitEfforts(const SolverSettings& settings, const BodyStore& bodies, const SolverLayout& layout,
                   FunctionRef<void(const IslandEffortReport&)> visit) {
     for (const SolverGroup& group : layout.groups)
-        if (group.effort.Exceeds(settings))
+        if (group.effort.Exceeds(settings) || group.isLoaded)
             visit({std::max<int>(group.effort.substeps, settings.substeps),
                    std::max<int>(group.effort.velocityIterations, settings.velocityIterations),
                    std::max<int>(group.effort.positionIterations, settings.positionIterations),
-                   bodies.IdOf(group.culprit), group.bodiesEnd - group.bodiesBegin});
+                   bodies.IdOf(group.culprit), group.bodiesEnd - group.bodiesBegin, group.isLoaded});
 }
 
 void RunStep(WorldState& world, StepState& state, double dt) {

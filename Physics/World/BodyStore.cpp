@@ -74,6 +74,7 @@ void BodyStore::MarkAwake(uint32_t index) {
     dynamics[index].awake = true;
     if (notesSleepChanges) sleepChanges.push_back(index);
     dynamics[index].slowSeconds = 0;
+    cold[index].directMisses = 0;
     if (cold[index].placed) {
         placed.push_back(index);
         --placedAsleep_;

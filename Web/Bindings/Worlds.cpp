@@ -103,7 +103,8 @@ FULCRUM_FOR_JAVASCRIPT int fulcrum_report(World* world) {
                                {"velocityIterations", effort.velocityIterations},
                                {"positionIterations", effort.positionIterations},
                                {"culprit", IdOf(effort.culprit)},
-                               {"bodies", effort.bodies}});
+                               {"bodies", effort.bodies},
+                               {"isDirect", effort.isDirect}});
     return Answer({{"step", report.step},
                    {"totalMs", report.totalMs},
                    {"stageMs", stages},

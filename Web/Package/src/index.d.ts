@@ -246,7 +246,7 @@ export interface StepReport {
   joints: number;
   islands: number;
   islandsWithMoreEffort: number;
-  mostEffort: { substeps: number; velocityIterations: number; positionIterations: number; culprit?: BodyId; bodies: number }[];
+  mostEffort: { substeps: number; velocityIterations: number; positionIterations: number; culprit?: BodyId; bodies: number; isDirect: boolean }[];
   largestPenetration: number;
   deepestA?: BodyId;
   deepestB?: BodyId;

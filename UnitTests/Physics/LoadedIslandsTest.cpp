@@ -1,0 +1,140 @@
+// Islands under load, which are solved directly with their contacts: forces and motion in closed form.
+#include <Fulcrum/UnitTests/Support/TestWorld.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace fulcrum::testing {
+namespace {
+
+bool IsSolvedDirectly(TestWorld& world) { return world.Report().mostEffort[0].isDirect; }
+
+// A column of ten cubes under a hundred times their mass: each interface carries what is above it, and the column is as
+// high as its cubes, with few substeps and with many.
+TEST(LoadedIslands, EachInterfaceOfAColumnCarriesWhatIsAboveIt) {
+    for (const int substeps : {1, 4, 16}) {
+        SystemSettings settings = NoSleep();
+        settings.solver.substeps = substeps;
+        TestWorld world(settings);
+        BodyId below = world.AddFloor();
+        std::vector<BodyId> bodies{below};
+        for (int i = 0; i < 10; ++i)
+            bodies.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 0.5 + i, 0}, .mass = 100}));
+        bodies.push_back(world.Add({.shape = CubeOf(0.5f), .position = {0, 10.5, 0}, .mass = 1e5f}));
+        world.Run(3);
+        ASSERT_TRUE(IsSolvedDirectly(world));
+        for (int i = 0; i + 1 < static_cast<int>(bodies.size()); ++i) {
+            const double above = (1e5 + 100 * (10 - i)) * kGravity;
+            const double force =
+                world.ForceBetween(bodies[static_cast<size_t>(i)], bodies[static_cast<size_t>(i) + 1]);
+            EXPECT_NEAR(force / above, 1, 1e-4) << substeps << " interface " << i;
+        }
+        EXPECT_NEAR(world.PositionOf(bodies.back()).y(), 10.5, substeps == 1 ? 1e-3 : 1e-4) << substeps;
+    }
+}
+
+// A light plank on two piers, with a load of 200 times its mass at a quarter of the span: the piers carry 3/4 and 1/4
+// of the load, and a half of the plank each.
+TEST(LoadedIslands, ABeamSharesItsLoadByTheLever) {
+    TestWorld world(NoSleep());
+    world.AddFloor();
+    const auto pier = [&](double x) {
+        return world.Add({.shape = BoxOf(0.1f, 0.5f, 0.5f), .position = {x, 0.5, 0}, .mass = 50});
+    };
+    const BodyId left = pier(-2), right = pier(2);
+    const BodyId plank = world.Add({.shape = BoxOf(2.1f, 0.1f, 0.5f), .position = {0, 1.1, 0}, .mass = 20});
+    world.Add({.shape = BoxOf(0.2f, 0.2f, 0.2f), .position = {-1, 1.4, 0}, .mass = 4000});
+    world.Run(3);
+    ASSERT_TRUE(IsSolvedDirectly(world));
+    const double onLeft = world.ForceBetween(left, plank), onRight = world.ForceBetween(right, plank);
+    EXPECT_NEAR((onLeft + onRight) / (4020 * kGravity), 1, 1e-4);
+    // The piers' tops are 20 cm wide: the reaction's place is uncertain by 10 cm of 4 m.
+    EXPECT_NEAR(onLeft / (3010 * kGravity), 1, 0.03);
+    EXPECT_NEAR(world.PositionOf(plank).y(), 1.1, 1e-4);
+}
+
+// Light cubes under heavy ones on slopes: what friction holds does not creep, what it does not hold slides as Coulomb's
+// law says.
+TEST(LoadedIslands, FrictionHoldsOnASlopeOrSlidesByCoulombsLaw) {
+    for (const float friction : {0.6f, 0.3f}) {
+        const double angle = std::numbers::pi / 8;
+        TestWorld world(NoSleep());
+        const Quaternion tilt = RotationAbout(Vector3(0, 0, 1), angle);
+        const Material material{.friction = friction};
+        world.Add({.shape = BoxOf(60, 1, 5), .motion = MotionType::Static, .rotation = tilt, .material = material});
+        const Vector3 up = Rotate(tilt, Vector3(0, 1, 0)), along = Rotate(tilt, Vector3(-1, 0, 0));
+        const auto add = [&](float height, float mass) {
+            return world.Add({.shape = BoxOf(0.5f, 0.1f, 0.5f),
+                              .position = Position(Vector3(up * height - along * 30.0f)),
+                              .rotation = tilt,
+                              .material = material,
+                              .mass = mass});
+        };
+        const BodyId light = add(1.1f, 10), heavy = add(1.3f, 1000);
+        world.Run(0.5);
+        ASSERT_TRUE(IsSolvedDirectly(world)) << friction;
+        const auto placeOf = [&](BodyId id) { return Dot<double>(world.PositionOf(id), along.cast<double>()); };
+        const auto speedOf = [&](BodyId id) { return Dot<double>(Position(world.VelocityOf(id)), along.cast<double>()); };
+        const double place = placeOf(light), speed = speedOf(light);
+        world.Run(2);
+        const double acceleration =
+            std::max(kGravity * (std::sin(angle) - double{friction} * std::cos(angle)), 0.0);
+        EXPECT_NEAR(speedOf(light), speed + 2 * acceleration, 0.005 * (speed + 2 * acceleration) + 1e-5) << friction;
+        EXPECT_NEAR(placeOf(heavy) - placeOf(light), 0, 1e-3) << friction;
+        if (acceleration == 0) {
+            EXPECT_NEAR(placeOf(light), place, 1e-5);
+        }
+    }
+}
+
+// A loaded plate on a belt gets the belt's speed, with friction's acceleration until then.
+TEST(LoadedIslands, ABeltCarriesALoad) {
+    struct Belt final : ContactListener {
+        BodyId belt;
+        float speed = 2;
+        void ModifyContact(const ContactView& contact, ContactChange& change) const override {
+            if (contact.bodyB == belt) change.MoveSurface(contact, belt, {speed, 0, 0});
+        }
+    } belt;
+    const Material material{.friction = 0.5f};
+    TestWorld world(NoSleep());
+    belt.belt = world.AddFloor(material);
+    const BodyId light = world.Add(
+        {.shape = BoxOf(0.5f, 0.1f, 0.5f), .position = {0, 0.1, 0}, .material = material, .mass = 10});
+    world.Add({.shape = BoxOf(0.5f, 0.1f, 0.5f), .position = {0, 0.3, 0}, .material = material, .mass = 1000});
+    world.Steps(30);
+    world.System().SetContactListener(&belt);
+    world.Run(0.2);
+    ASSERT_TRUE(IsSolvedDirectly(world));
+    EXPECT_NEAR(world.VelocityOf(light).x(), 0.5 * kGravity * 0.2, 0.01);
+    world.Run(1);
+    EXPECT_NEAR(world.VelocityOf(light).x(), 2, 1e-4);
+}
+
+// The same bits after a snapshot as without, and for one thread and two.
+TEST(LoadedIslands, ASnapshotGoesOnWithTheSameBits) {
+    const auto add = [](TestWorld& world) {
+        world.AddFloor();
+        for (int i = 0; i < 6; ++i)
+            world.Add({.shape = CubeOf(0.5f), .position = {0.02 * (i % 2), 0.5 + i, 0.01 * (i % 3)}, .mass = 100});
+        world.Add({.shape = CubeOf(0.5f), .position = {0.1, 6.5, 0}, .mass = 5e4f});
+    };
+    TestWorld world(NoSleep()), two(NoSleep(), 2), restored(NoSleep());
+    add(world);
+    add(two);
+    world.Steps(100);
+    two.Steps(100);
+    ASSERT_TRUE(IsSolvedDirectly(world));
+    Bytes bytes;
+    ASSERT_TRUE(world.System().SaveSnapshot(bytes));
+    ASSERT_TRUE(restored.System().RestoreSnapshot(bytes));
+    for (int step = 0; step < 60; ++step) {
+        for (TestWorld* each : {&world, &two, &restored}) each->Step();
+        ASSERT_EQ(world.System().HashPoses(), two.System().HashPoses()) << step;
+        ASSERT_EQ(world.System().HashPoses(), restored.System().HashPoses()) << step;
+    }
+    EXPECT_TRUE(IsSolvedDirectly(restored));
+}
+
+}  // namespace
+}  // namespace fulcrum::testing
