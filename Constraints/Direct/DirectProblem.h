@@ -61,10 +61,10 @@ struct DirectProblem {
 
 struct DirectSettings {
     double tolerance = 0;  // m/s, of a body's unbalanced impulse over its mass; of torques over sqrt(mass inertia)
-    // The same with limits of friction by the normal impulses found. If less is left than that, the solution has those of
-    // the pass before: where bodies wedge each other, further passes would part from the solution.
+    // The same with limits of friction by the normal impulses found. If less is left than that, the solution has those
+    // of the pass before: where bodies wedge each other, further passes would part from the solution.
     double limitTolerance = 0;
-    double speed = 0.1;    // m/s: what bodies gain by gravity; only the way of the search depends on it
+    double speed = 0.1;  // m/s: what bodies gain by gravity; only the way of the search depends on it
     uint32_t mostFactorizations = 60;
     uint32_t mostPasses = 6;  // solutions with limits of friction from the one before
 };

@@ -123,8 +123,7 @@ bool DirectContacts::AddRows(std::span<const DirectBody> island, const ContactSo
             VisitPoints(batch, lane, [&](int i) {
                 const auto& point = batch.rows[i];
                 const double gap = std::max(double{point.separation[lane]} - RoundingOf(size), 0.0);
-                DirectRow& row =
-                    add(n, t1 * double{point.b[lane]} - t2 * double{point.a[lane]}, point.impulse[lane]);
+                DirectRow& row = add(n, t1 * double{point.b[lane]} - t2 * double{point.a[lane]}, point.impulse[lane]);
                 if (restitution > 0)
                     bounces |= IsHit(bodies_, island, indices, row, gap, h_, double{settings.restitutionSpeed});
                 row.c += gap / h_;
@@ -180,6 +179,13 @@ void DirectContacts::ReadImpulses(std::span<const DirectRow> rows) {
     });
 }
 
+void DirectContacts::ForgetImpulses() {
+    VisitBatches([](auto& batch) {
+        for (auto& row : batch.rows) row.impulse = decltype(row.impulse)(0.0f);
+        for (auto& impulse : batch.frictionImpulse) impulse = std::remove_reference_t<decltype(impulse)>(0.0f);
+    });
+}
+
 bool DirectContacts::AddCorrections(std::span<const DirectRow> rows, const ContactSolveSettings& settings,
                                     std::span<DirectRow> to, size_t& count) const {
     const double slop = double{settings.slop}, part = double{settings.baumgarte}, most{settings.mostCorrection};
@@ -207,7 +213,8 @@ bool DirectContacts::AddCorrections(std::span<const DirectRow> rows, const Conta
             });
             if (!contact->hasFriction) continue;
             const DirectPatch& limits = patches_[patch++];
-            const double limit = (1 - kHolds) * limits.friction * sum, x = rows[next].impulse, y = rows[next + 1].impulse;
+            const double limit = (1 - kHolds) * limits.friction * sum, x = rows[next].impulse,
+                         y = rows[next + 1].impulse;
             if (x * x + y * y < limit * limit) {
                 add(rows[next]);
                 add(rows[next + 1]);

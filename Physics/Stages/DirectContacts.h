@@ -15,8 +15,8 @@ namespace fulcrum {
 class DirectContacts {
 public:
     // localOf: see DirectIsland. h: s, of a substep. give: m/s, by which a contact may give way.
-    DirectContacts(BodyStore& bodies, SolverLayout& layout, const SolverGroup& group,
-                   std::span<const uint32_t> localOf, double h, double give, ScratchArena& scratch);
+    DirectContacts(BodyStore& bodies, SolverLayout& layout, const SolverGroup& group, std::span<const uint32_t> localOf,
+                   double h, double give, ScratchArena& scratch);
 
     // m, the least size of a body at a contact. After AddRows.
     double LeastSize() const { return leastSize_; }
@@ -34,6 +34,8 @@ public:
     // Makes rows stiffer that give way by more than they may. False if there is none.
     bool Stiffen(std::span<DirectRow> rows);
     void ReadImpulses(std::span<const DirectRow> rows);
+    // Those of bodies that are wedged are balanced, but too large for a warm start of iterations.
+    void ForgetImpulses();
 
     // Appends the rows of a correction of poses to the first `count` of `to`. rows: those of the solution. False if
     // they ask for nothing.

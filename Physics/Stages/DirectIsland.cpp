@@ -26,8 +26,9 @@ constexpr double kTolerance = 1e-4, kContactTolerance = 1e-5;
 constexpr double kLimitTolerance = 1e-2;
 // As a part of g h^2, of corrections of poses.
 constexpr double kPoseTolerance = 1e-3;
-// As a part of g h, what a contact gives way: columns of a hundred boxes lean by ten times as much with three times that.
-// No less than half of what the grid of positions resolves, with the usual `baumgarte` that is where contacts at rest are.
+// As a part of g h, what a contact gives way: columns of a hundred boxes lean by ten times as much with three times
+// that. No less than half of what the grid of positions resolves, with the usual `baumgarte` that is where contacts at
+// rest are.
 constexpr double kGive = 1e-4, kLeastGive = 0.1;
 // Of a substep, on average, and as many at least as of so many substeps: more than that take longer than iterations in
 // the substeps that a load asks for. They balance nothing else.
@@ -399,6 +400,7 @@ bool DirectIsland::NoteMisses() {
         else if (misses > 0) --misses;
         areMany |= misses == kMostMisses;
     }
+    if (areMany) contacts_.ForgetImpulses();
     return areMany;
 }
 
@@ -470,15 +472,24 @@ void DirectIsland::CorrectPoses(const ContactSolveSettings& settings, ScratchAre
     if (!isWanted) return;
     const DirectProblem problem{island_, corrections_.first(count), {}, {}};
     const DirectSettings how{.tolerance = kPoseTolerance * speed_ * h_, .speed = speed_ * h_};
-    const bool isFound =
-        isWhole_ ? SolveDirectly(problem, pattern_, how, factor_, solved_, scratch).outcome ==
-                       DirectResult::Outcome::Solved
-                 : StepDirectly(problem, pattern_, factor_, solved_, scratch);
+    const bool isFound = isWhole_ ? SolveDirectly(problem, pattern_, how, factor_, solved_, scratch).outcome ==
+                                        DirectResult::Outcome::Solved
+                                  : StepDirectly(problem, pattern_, factor_, solved_, scratch);
     if (!isFound) return;
+    // Of bodies that are wedged, no row resists a motion along the wedge: none moves farther than all rows together ask
+    // for.
+    double part = 1;
+    if (isWhole_) {
+        double wanted = 0, most = 0;
+        for (const DirectRow& row : problem.rows) wanted += std::abs(row.c);
+        for (size_t i = 0; i < island_.size(); ++i)
+            for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(solved_[i].v[k] - island_[i].velocity[k]));
+        if (most > wanted) part = wanted / most;
+    }
     for (size_t i = 0; i < places_.size(); ++i) {
         BodyState& state = bodies_.states[layout_.bodies[group_.bodiesBegin + i]];
         const double *to = solved_[i].v, *from = island_[i].velocity;
-        const auto change = [&](int k) { return static_cast<float>(to[k] - from[k]); };
+        const auto change = [&](int k) { return static_cast<float>(part * (to[k] - from[k])); };
         const Vector3 way(change(0), change(1), change(2)), turn(change(3), change(4), change(5));
         const Vector3 w(state.angularVelocity[0], state.angularVelocity[1], state.angularVelocity[2]),
             turned = Rotate(TurnOf(turn), w);

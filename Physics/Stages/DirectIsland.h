@@ -1,8 +1,8 @@
-// An island that is solved directly (Constraints/Direct): between its batches and the direct solver. Fills the rows from
-// the batches, writes velocities and impulses back, and moves the poses by what joints and contacts are off. Either all
-// constraints are solved together, or the joints alone, where contacts bounce or cannot be rows: to these iterations all
-// joints together are one more constraint. Used by Solve, one thread per island. The group of the island has no other;
-// its joints are all in JointBatches.
+// An island that is solved directly (Constraints/Direct): between its batches and the direct solver. Fills the rows
+// from the batches, writes velocities and impulses back, and moves the poses by what joints and contacts are off.
+// Either all constraints are solved together, or the joints alone, where contacts bounce or cannot be rows: to these
+// iterations all joints together are one more constraint. Used by Solve, one thread per island. The group of the island
+// has no other; its joints are all in JointBatches.
 #pragma once
 
 #include <Fulcrum/Constraints/Direct/DirectSolver.h>
@@ -39,7 +39,8 @@ public:
     bool SolveAll(const ContactSolveSettings& settings, ScratchArena& scratch);
 
     // A position iteration: before that of single rows notes where the bodies are. After it moves them so that J times
-    // the change of pose of both is minus the bias of the locks. The same for contacts after SolveAll. Adds no velocity.
+    // the change of pose of both is minus the bias of the locks. The same for contacts after SolveAll. Adds no
+    // velocity.
     void NotePlaces(const ContactSolveSettings& settings);
     void CorrectPoses(const ContactSolveSettings& settings, ScratchArena& scratch);
 
@@ -58,9 +59,9 @@ private:
     DirectPattern pattern_;
     DirectFactor factor_;
     bool hasJoints_ = false;
-    bool isWhole_ = false;          // all constraints were solved together last
+    bool isWhole_ = false;                         // all constraints were solved together last
     uint32_t solutions_ = 0, factorizations_ = 0;  // of the whole, in this step
-    bool isFactorCurrent_ = false;  // made with the Jacobians of this substep
+    bool isFactorCurrent_ = false;                 // made with the Jacobians of this substep
     std::span<DirectBody> island_;
     std::span<DirectRow> rows_, across_, corrections_;
     size_t acrossCount_ = 0, stiffnessCount_ = 0;

@@ -42,7 +42,7 @@ std::span<const IslandEffort> EffortsOf(const Array<SavedEffort>& saved, const B
         if (group.body == ~0u) continue;
         IslandEffort& effort = efforts[sets.Find(bodies.cold[group.body].awakePlace)];
         effort.least = effort.asked = group.effort;
-        effort.isLoaded = group.isLoaded;
+        effort.isHard = group.isLoaded;
     }
     return efforts;
 }
@@ -64,7 +64,6 @@ struct IslandTraits {
     bool overflows : 1 = false;  // some constraint has no color
     bool hasJoints : 1 = false, hasContacts : 1 = false;
     bool hasHardJoints : 1 = false;  // they are solved directly, whatever touches them
-    bool isAnchored : 1 = false;     // joints that may contradict each other hold on to something immovable
     bool mayContradict : 1 = false;  // some joints may contradict each other
     bool isIterated : 1 = false;     // contacts are not solved directly
     bool isLoaded : 1 = false;       // they are, because of loads
@@ -75,8 +74,7 @@ struct IslandTraits {
 // contacts took long, until they fall asleep.
 bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body) {
     const BodyDynamics& d = bodies.dynamics[body];
-    return !d.crowded && d.lockedAxes == LockedAxes::None &&
-           bodies.cold[body].directMisses < DirectIsland::kMostMisses;
+    return !d.crowded && d.lockedAxes == LockedAxes::None && bodies.cold[body].directMisses < DirectIsland::kMostMisses;
 }
 
 // Finds the patterns of hard islands, where these cost little.
@@ -182,6 +180,9 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
                 return;
             }
             its.hasContacts = true;
+            // What is kinematic presses with any force, and wedges what is in its way.
+            const uint32_t other = entry.fixedA ? entry.bodyA : entry.bodyB;
+            if (kind == Kind::Fixed && bodies.dynamics[other].motion == MotionType::Kinematic) its.isIterated = true;
             if (!pairs.massOverrides.empty() && pairs.records[entry.constraint].Has(ContactRecord::kMassOverride))
                 its.isIterated = true;
         });
@@ -198,19 +199,17 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     result.rootOf = scratch.Allocate<uint32_t>(count);
     for (uint32_t i = 0; i < count; ++i) result.rootOf[i] = sets.Find(i);
     for (const uint32_t body : hard.open) traits[result.rootOf[placeOf(body)]].hasHardJoints = true;
-    // Joints alone only where nothing touches: contacts that are iterated against stiff ones that contradict each other
-    // keep heaps awake. Those of machines, bridges are solved together with them.
+    // Contradictions only where nothing touches: contacts that are iterated against stiff ones keep heaps awake.
     for (const uint32_t body : hard.contradicting) {
         IslandTraits& its = traits[result.rootOf[placeOf(body)]];
         its.mayContradict = true;
         if (!its.hasContacts) its.hasHardJoints = true;
     }
-    for (const uint32_t body : hard.anchored) traits[result.rootOf[placeOf(body)]].isAnchored = true;
     bool areAnyHard = false;
     for (uint32_t i = 0; i < count; ++i) {
         IslandTraits& its = traits[i];
-        its.isLoaded = efforts[i].isLoaded && !efforts[i].hasGaps && !its.isIterated;
-        its.isHard = (its.isLoaded || its.hasHardJoints || (its.isAnchored && !its.isIterated)) && !its.overflows;
+        its.isLoaded = efforts[i].isHard && !its.isIterated;
+        its.isHard = (its.isLoaded || its.hasHardJoints) && !its.overflows;
         areAnyHard |= its.isHard;
     }
     std::optional<PatternFinder> patterns;

@@ -116,10 +116,7 @@ private:
         if (isIterated || !std::isfinite(exactLoad_)) return;
         const size_t count = queued_ - begin;
         const bool hasLoop = links / 2 + anchors > count - 1 + (anchors > 0);
-        if (hasLoop || isPastLimit) {
-            found_.contradicting.push_back(first);
-            if (isAnchored) found_.anchored.push_back(first);
-        }
+        if (hasLoop || isPastLimit) found_.contradicting.push_back(first);
         if (hasLoop) return;
         // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it.
         if (isStrained && isLever && count > kLeastLever) return found_.open.push_back(first);
@@ -175,7 +172,6 @@ void FindHardMechanisms(const BodyStore& bodies, const ConstraintColoring& color
     found.strainVersion = joints.strainVersion;
     found.open.clear();
     found.contradicting.clear();
-    found.anchored.clear();
     Finder(bodies, coloring, joints, settings, found, scratch).Find();
 }
 

@@ -16,14 +16,13 @@ namespace fulcrum {
 
 struct HardMechanisms {
     // One dynamic body of each: of those that are hard whatever touches them, and of those with joints that may
-    // contradict each other, by loops or limits. `anchored`: of these, those that something immovable holds, such as
-    // bridges.
-    Array<uint32_t> open, contradicting, anchored;
+    // contradict each other, by loops or limits.
+    Array<uint32_t> open, contradicting;
     uint64_t version = 0, strainVersion = 0;  // versions of the joints from which this was computed
 };
 inline size_t HeapBytes(const HardMechanisms& all) {
-    const auto& [open, contradicting, anchored, version, strainVersion] = all;
-    return HeapBytes(open, contradicting, anchored, version, strainVersion);
+    const auto& [open, contradicting, version, strainVersion] = all;
+    return HeapBytes(open, contradicting, version, strainVersion);
 }
 
 // Updates `found` from the colored joints. Reads the settings' exactJointLoad and solver.

@@ -326,7 +326,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         efforts[i].longer = std::sqrt(softer / std::clamp(0.5f * need, 1.0f, softer));
         RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;
-        efforts[i].hasGaps = needs[i].isStiff;
+        efforts[i].isHard = needs[i].need > 1 && !needs[i].isStiff;
         efforts[i].stiffness = needs[i].stiffness;
     }
     return efforts;

@@ -16,7 +16,7 @@ struct IslandEffort {
     LeastEffort least;
     LeastEffort asked;       // by the settings of joints: part of `least`
     bool isLoaded = false;   // loads of contacts ask for it, or gaps of joints
-    bool hasGaps = false;    // these do
+    bool isHard = false;     // contacts sink by more than they may with the settings' effort
     uint8_t stiffness = 0;   // with which loaded contacts were solved; 0: they are new
     float longer = 1;        // its springs are to be those of substeps longer by this, see kLoadedSubstep
     uint32_t culprit = ~0u;  // the body of the joint or contact that asked for most of it

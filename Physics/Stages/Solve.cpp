@@ -237,8 +237,8 @@ private:
         const auto solve = [&] {
             directScratch_->Reset();
             if (isWhole_) return direct_->SolveAll(ContactSettingsAt(substep, 0.5f), *directScratch_);
-            return direct_->SolveJoints(
-                hasContacts ? DirectIsland::From::Current : DirectIsland::From::Unconstrained, *directScratch_);
+            return direct_->SolveJoints(hasContacts ? DirectIsland::From::Current : DirectIsland::From::Unconstrained,
+                                        *directScratch_);
         };
         isSolved_ = solve();
         if (isWhole_ && !isSolved_) {

@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x6a86c7901373672cull;
-constexpr uint64_t kGoldenHashOfJoints = 0x640f96146373d975ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xc1b9cf06fe6a0b0full;
+constexpr uint64_t kGoldenHash = 0x93b55882a4c38091ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x33118718fcf0e7e5ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xbfc74dbbe0163220ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0xe044a2d5d14e8f8dull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7314e7ef10c8c8afull;
 
 std::string Hex(uint64_t number) {
     char text[24];
