@@ -18,6 +18,7 @@ uint64_t HashOf(uint64_t a, uint64_t b, uint64_t kind) { return Scrambled(a + Sc
 
 uint32_t EffortReturns::Sample(const PhysicsSystem& system) {
     constexpr uint32_t kNone = ~0u;
+    constexpr int kDirect = 256;  // more than any number of substeps
     std::fill(islandOf_.begin(), islandOf_.end(), kNone);
     keys_.clear();
     system.VisitIslands([&](BodyId body, uint32_t island) {
@@ -40,7 +41,8 @@ uint32_t EffortReturns::Sample(const PhysicsSystem& system) {
     substeps_.assign(keys_.size(), system.Settings().solver.substeps);
     system.VisitEfforts([&](const IslandEffortReport& effort) {
         const uint32_t body = effort.culprit.index;
-        if (body < islandOf_.size() && islandOf_[body] != kNone) substeps_[islandOf_[body]] = effort.substeps;
+        if (body >= islandOf_.size() || islandOf_[body] == kNone) return;
+        substeps_[islandOf_[body]] = effort.isDirect ? kDirect : effort.substeps;
     });
     uint32_t returns = 0;
     now_.clear();

@@ -118,13 +118,12 @@ TEST_F(UserScene, IsAdvisedTargetsToo) {
     const auto isTarget = [](const Setting& setting) { return setting.family == Family::Target; };
     EXPECT_TRUE(std::ranges::any_of(AdviceGrid({.contacts = true}), isTarget));
     EXPECT_FALSE(std::ranges::any_of(AdviceGrid({}), isTarget));
-    // The scene has no target of its own: sinks fall with the square of the substeps that one asks for.
+    // The scene has no target of its own: with one it is solved directly.
     LabOptions lab = command.Value().lab;
     lab.settings = {Setting{}, {.family = Family::Target, .target = 0.0005f}};
     const std::vector<RunRecord> runs = Run(lab);
     ASSERT_EQ(runs.size(), 2u);
     EXPECT_LT(runs[1].Error(), 0.5 * runs[0].Error());
-    EXPECT_GT(runs[1].traversals, 1.3 * runs[0].traversals);
     const std::string advice = AdviceForError({lab.scenes[0], runs}, runs[1].Error());
     EXPECT_NE(advice.find("settings.accuracy = {.penetration = 0.0005f, .jointError = 0.0005f};"), std::string::npos)
         << advice;
