@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace fulcrum {
 
@@ -65,10 +66,12 @@ DirectContacts::DirectContacts(BodyStore& bodies, SolverLayout& layout, const So
 
 bool DirectContacts::CanBeRows(const ContactRecord* records) const {
     bool can = true;
-    VisitBatches([&](const auto& batch) {
+    VisitBatches([&]<int N, bool kFixedB>(const ContactBatch<N, kFixedB>& batch) {
         can &= batch.gentle == 0 && !batch.isGuided;
-        for (int lane = 0; lane < batch.count; ++lane)
+        for (int lane = 0; lane < batch.count; ++lane) {
             can &= !records[batch.contact[lane]].Has(ContactRecord::kMassOverride);
+            if constexpr (kFixedB) can &= bodies_.dynamics[batch.bodyB[lane]].motion != MotionType::Kinematic;
+        }
     });
     return can;
 }
@@ -76,7 +79,6 @@ bool DirectContacts::CanBeRows(const ContactRecord* records) const {
 bool DirectContacts::AddRows(std::span<const DirectBody> island, const ContactSolveSettings& settings,
                              std::span<DirectRow> rows, size_t& count) {
     patchCount_ = 0;
-    leastSize_ = std::numeric_limits<double>::infinity();
     bool bounces = false;
     auto contact = contacts_.begin();
     VisitBatches([&]<int N, bool kFixedB>(const ContactBatch<N, kFixedB>& batch) {
@@ -112,7 +114,6 @@ bool DirectContacts::AddRows(std::span<const DirectBody> island, const ContactSo
             };
             double size = std::sqrt(Dot<double>(armA, armA));
             if constexpr (!kFixedB) size = std::min(size, std::sqrt(Dot<double>(armB, armB)));
-            leastSize_ = std::min(leastSize_, size);
             *contact = {.first = static_cast<uint32_t>(count),
                         .normals = 0,
                         .hasFriction = false,
@@ -203,11 +204,16 @@ bool DirectContacts::AddCorrections(std::span<const DirectRow> rows, const Conta
             double sum = 0;
             VisitPoints(batch, lane, [&](int i) {
                 const DirectRow& row = rows[next++];
-                const double separation = double{batch.rows[i].separation[lane]} + slop;
+                const double separation = double{batch.rows[i].separation[lane]}, within = separation + slop;
                 DirectRow& added = add(row);
-                // What carries a load stays in contact: then this is no search.
-                if (row.impulse > 0) added.lo = -DirectRow::kUnlimited;
-                added.c = separation < 0 || row.impulse > 0 ? std::clamp(part * separation, -most, most) : separation;
+                const double correction = part * (separation > 0 ? separation : std::min(within, 0.0));
+                if (row.impulse > 0) {
+                    // What carries a load stays in contact: then this is no search.
+                    added.lo = -DirectRow::kUnlimited;
+                    added.c = std::clamp(correction, -most, most);
+                } else {
+                    added.c = within < 0 ? std::max(correction, -most) : within;
+                }
                 any |= added.c < 0;
                 sum += row.impulse;
             });

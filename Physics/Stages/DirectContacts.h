@@ -18,13 +18,12 @@ public:
     DirectContacts(BodyStore& bodies, SolverLayout& layout, const SolverGroup& group, std::span<const uint32_t> localOf,
                    double h, double give, ScratchArena& scratch);
 
-    // m, the least size of a body at a contact. After AddRows.
-    double LeastSize() const { return leastSize_; }
     bool AreAny() const { return !contacts_.empty(); }
     size_t MostRows() const { return contacts_.size() * (ContactRecord::kMaxPoints + 3); }
     std::span<const DirectPatch> Patches() const { return patches_.first(patchCount_); }
     // Whether they can be rows: not those of bodies with masses of their own, with locked translations, or created
-    // inside each other. After Prepare.
+    // inside each other, nor those with kinematic bodies, which press with any force and wedge what is in their way.
+    // After Prepare.
     bool CanBeRows(const ContactRecord* records) const;
 
     // Appends the rows to the first `count` of `rows`, with the impulses of the last substep. island: bodies with the
@@ -63,7 +62,7 @@ private:
     SolverLayout& layout_;
     const SolverGroup& group_;
     std::span<const uint32_t> localOf_;
-    double h_, give_, leastSize_ = 0;
+    double h_, give_;
     std::span<Contact> contacts_;  // by lane of the batches
     std::span<DirectPatch> patches_;
     size_t patchCount_ = 0;

@@ -19,8 +19,7 @@ using namespace joints;
 // load's own motion times the ratio of masses, and a heavy one then whirls light links: a ball of 3 10^5 times the mass
 // of its chain's links tears it at 1e-7. Where loops or contacts contradict joints, impulses grow with its inverse.
 constexpr double kFreeSoftness = 1e-8, kSoftness = 1e-6;
-// Unbalanced impulse over mass that is left, as a part of g h: with contacts less, since
-// their forces are reported.
+// Unbalanced impulse over mass that is left, as a part of g h: with contacts less, since their forces are reported.
 constexpr double kTolerance = 1e-4, kContactTolerance = 1e-5;
 // The same by limits of friction, see DirectSettings.
 constexpr double kLimitTolerance = 1e-2;
@@ -354,9 +353,7 @@ size_t DirectIsland::AddJoints() {
 bool DirectIsland::Solve(std::span<DirectRow> rows, ScratchArena& scratch) {
     const DirectProblem problem{island_, rows, isWhole_ ? contacts_.Patches() : std::span<const DirectPatch>(),
                                 stiffness_.first(stiffnessCount_)};
-    // Less for bodies so small that they would move by much of their size.
-    const double most = isWhole_ ? std::min(tolerance_, 2e-4 * contacts_.LeastSize() / h_) : tolerance_;
-    const DirectSettings how{.tolerance = most, .limitTolerance = kLimitTolerance * speed_, .speed = speed_};
+    const DirectSettings how{.tolerance = tolerance_, .limitTolerance = kLimitTolerance * speed_, .speed = speed_};
     const DirectResult result = SolveDirectly(problem, pattern_, how, factor_, solved_, scratch);
     isFactorCurrent_ |= result.factorizations > 0;
     factorizations_ += result.factorizations;
@@ -389,6 +386,12 @@ bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
     if (!Solve(rows, scratch)) return false;
     WriteVelocities();
     return true;
+}
+
+bool DirectIsland::MayBeWhole(const ContactRecord* records) const {
+    const auto mayBe = [&](uint32_t body) { return bodies_.cold[body].directMisses < kMostMisses; };
+    return contacts_.AreAny() && contacts_.CanBeRows(records) &&
+           std::ranges::all_of(std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size()), mayBe);
 }
 
 bool DirectIsland::NoteMisses() {

@@ -21,11 +21,10 @@ public:
     const SolverGroup& Group() const { return group_; }
     bool HasJoints() const { return hasJoints_; }
     bool HasContacts() const { return contacts_.AreAny(); }
-    // After Prepare: DirectContacts::CanBeRows.
-    bool MayBeWhole(const ContactRecord* records) const { return contacts_.CanBeRows(records); }
-
-    // Whether it is not for direct solutions with contacts: those of so many steps took long.
+    // Not for direct solutions with contacts are islands of which those of so many steps took long.
     static constexpr uint8_t kMostMisses = 8;
+    // Whether it has contacts, and all can be solved together. After Prepare.
+    bool MayBeWhole(const ContactRecord* records) const;
     // At the end of the step, where it was solved whole: counts those steps, of all bodies. True if they are so many.
     bool NoteMisses();
 

@@ -180,7 +180,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
                 return;
             }
             its.hasContacts = true;
-            // What is kinematic presses with any force, and wedges what is in its way.
+            // See DirectContacts::CanBeRows.
             const uint32_t other = entry.fixedA ? entry.bodyA : entry.bodyB;
             if (kind == Kind::Fixed && bodies.dynamics[other].motion == MotionType::Kinematic) its.isIterated = true;
             if (!pairs.massOverrides.empty() && pairs.records[entry.constraint].Has(ContactRecord::kMassOverride))

@@ -137,7 +137,7 @@ public:
     void SolveDirectlyWith(DirectIsland& island, ScratchArena& scratch) {
         direct_ = &island;
         directScratch_ = &scratch;
-        mayBeWhole_ = island.HasContacts() && island.MayBeWhole(stores_.pairs.records.data());
+        mayBeWhole_ = island.MayBeWhole(stores_.pairs.records.data());
     }
 
     // A group of small islands: one worker, from beginning to end.
@@ -231,7 +231,7 @@ private:
     void SolveDirectly(Verb verb, uint8_t substep) {
         if (!SolvesJoints(verb)) return;
         const bool isFirst = verb == Verb::FirstVelocities;
-        const bool hasContacts = direct_->HasContacts();
+        const bool hasContacts = direct_->HasContacts(), solvesJoints = direct_->HasJoints() && group_.solvesJoints;
         if (isFirst) isWhole_ = mayBeWhole_;
         else if (isWhole_ || (isSolved_ && !hasContacts)) return;
         const auto solve = [&] {
@@ -240,10 +240,10 @@ private:
             return direct_->SolveJoints(hasContacts ? DirectIsland::From::Current : DirectIsland::From::Unconstrained,
                                         *directScratch_);
         };
-        isSolved_ = solve();
+        isSolved_ = (isWhole_ || solvesJoints) && solve();
         if (isWhole_ && !isSolved_) {
             isWhole_ = false;
-            isSolved_ = direct_->HasJoints() && group_.solvesJoints && solve();
+            isSolved_ = solvesJoints && solve();
         }
         if (!isSolved_ || !isFirst || !direct_->HasJoints()) return;
         // Joints have aimed by the velocities of the last substep: once more by those found.

@@ -14,8 +14,8 @@ namespace fulcrum::testing {
 namespace {
 
 constexpr uint64_t kGoldenHash = 0x93b55882a4c38091ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x33118718fcf0e7e5ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xbfc74dbbe0163220ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x772666b18672f1c8ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xe210b54bd42bcd33ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
 constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7314e7ef10c8c8afull;
 
