@@ -15,7 +15,7 @@ constexpr double kChordGain = 4;
 // The next constants only balance the two methods: halved or doubled, each leaves the mean of factorizations of
 // DirectImpactTest's heaps, 29, between 27 and 34, and at most one of the 24 unsolved.
 // So many of Newton's steps find the solution, or the next is the interior point method's.
-constexpr uint32_t kNewtonSteps = 4;
+constexpr uint32_t kNewtonSteps = 8;
 // That method begins with impulses and multipliers of this many times the usual speed, and ends where the residual is
 // that part of it: rows are at the right limits then, and Newton's steps end at once. More than that it rarely takes.
 constexpr double kInteriorSpeed = 10, kInteriorEnd = 0.5;

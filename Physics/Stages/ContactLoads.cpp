@@ -149,6 +149,7 @@ bool IsLeftOut(const BodyStore& bodies, const JointStore& joints, const Pair& pa
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
                  const JointStore& joints, PairStore& pairs) {
     if (!AdaptsToLoads(step.settings, bodies)) return;
+    const float softness = LoadSoftnessOf(step);
     for (uint32_t index : began) {
         const Pair& pair = pairs.pairs[index];
         if (IsLeftOut(bodies, joints, pair)) continue;
@@ -158,7 +159,7 @@ void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const
         const BodyDynamics &upper = down < 0 ? b : a, &lower = down < 0 ? a : b;
         if (!(upper.inverseMass > 0)) continue;
         const BodyDynamics& lighter = lower.inverseMass > upper.inverseMass ? lower : upper;
-        const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * step.softness;
+        const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * softness;
         const float part = sink / SizeOf(lighter);
         const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
         const float springs = IsLoad(upper, lower, target, step) ? kLoadedSubstep * kLoadedSubstep : 1;
@@ -175,13 +176,14 @@ void NoteForces(const StepContext& step, const ConstraintColoring& coloring, con
                 const JointStore& joints, PairStore& pairs) {
     if (!AdaptsToLoads(step.settings, bodies)) return;
     using Kind = ConstraintColoring::Kind;
+    const float softness = LoadSoftnessOf(step);
     const auto note = [&](uint32_t, const ConstraintColoring::Entry& entry) {
         const float impulse = pairs.records[entry.constraint].TotalImpulse();
         const uint32_t index = pairs.contacts[entry.constraint].pair;
         const Pair& pair = pairs.pairs[index];
         const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
         const BodyDynamics& lighter = b.inverseMass > a.inverseMass ? b : a;
-        const float part = impulse / step.lastSubstepDt * lighter.inverseMass * step.softness / SizeOf(lighter);
+        const float part = impulse / step.lastSubstepDt * lighter.inverseMass * softness / SizeOf(lighter);
         const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
         const uint32_t level = LevelOf(part / LargestUnnoted(target));
         LoadLevel& load = pairs.loads[index];
@@ -223,7 +225,7 @@ bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, co
         const Real weight = Abs(along) / Select(along > zero, batch.sideB.inverse.mass, batch.inverseA.mass);
         force = Select(unseen, Max(force, weight), force);
     }
-    const Real sink = force * inverseMass * Real(scale.softness);
+    const Real sink = force * inverseMass * Real(scale.loadSoftness);
     Real part = sink * Real(1 / LargestUnnoted(scale.target)) / Sqrt(squaredSize);
     if (bodies.targetCount > 0)
         for (int lane = 0; lane < batch.count; ++lane) {

@@ -25,9 +25,10 @@ inline float ExcessOfLevel(uint32_t level) { return std::ldexp(kUnnotedFraction,
 // the lighter of the two, gives a sink of F / (m w^2), w = 2 pi StiffestFrequency. It is proportional to the square of
 // the substep.
 struct SinkScale {
-    float target;      // AccuracyTarget::penetration
-    float inverseDt;   // 1/s, of the batch's substeps
-    float softness;    // s^2: 1 / w^2 for the system's substeps
+    float target;        // AccuracyTarget::penetration
+    float inverseDt;     // 1/s, of the batch's substeps
+    float softness;      // s^2: 1 / w^2 for the system's substeps
+    float loadSoftness;  // s^2: LoadSoftnessOf
     float depthScale;  // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
     Vector3 gravity;   // m/s2
     uint8_t stiffness;     // see LoadLevel
@@ -43,6 +44,12 @@ inline uint8_t StepsOfLoad(const StepContext& step) { return static_cast<uint8_t
 inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
     const float w = 6.28318531f * std::min(settings.contactFrequency, StiffestFrequency(settings.solver, substepDt));
     return 1.0f / (w * w);
+}
+// The same, by which loads are judged: that of substeps of 1/240 s at least. What needs a direct solution there gets it
+// with shorter substeps, too: they are not to be less exact.
+inline float LoadSoftnessOf(const StepContext& step) {
+    constexpr float kUsual = 1.0f / 240;
+    return step.stiffnessDt < kUsual ? SoftnessOf(step.settings, kUsual) : step.softness;
 }
 
 // Levels of joint errors assume that the gap is proportional to the square of the substep; if it is not, the efforts

@@ -93,7 +93,7 @@ public:
                 UnionFind& sets, std::span<Need> needs, ScratchArena& scratch)
         : step_(step),
           settings_(step.settings),
-          softness_(step.softness),
+          softness_(LoadSoftnessOf(step)),
           bodies_(bodies),
           coloring_(coloring),
           joints_(joints),
@@ -316,7 +316,12 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     if (AdaptsToLoads(step.settings, bodies))
         LoadEfforts(step, bodies, coloring, joints, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
     else if (!adaptsToGaps) return efforts;
+    // Of loads, with the settings' own substeps.
+    const float ofSubsteps = step.softness / LoadSoftnessOf(step);
     for (size_t i = 0; i < count; ++i) {
+        efforts[i].isHard = needs[i].need > 1 && !needs[i].isStiff;
+        if (efforts[i].isHard && efforts[i].culprit == ~0u) efforts[i].culprit = needs[i].culprit;
+        if (!needs[i].isStiff) needs[i].need *= ofSubsteps;
         if (!(needs[i].need > 1) && !needs[i].isLoaded) continue;
         // Islands under load get springs half as stiff as the stiffest, unless the maximum effort does not suffice
         // then. A need is up to twice what the island needs.
@@ -326,7 +331,6 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         efforts[i].longer = std::sqrt(softer / std::clamp(0.5f * need, 1.0f, softer));
         RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;
-        efforts[i].isHard = needs[i].need > 1 && !needs[i].isStiff;
         efforts[i].stiffness = needs[i].stiffness;
     }
     return efforts;

@@ -104,6 +104,7 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
         return SinkScale{.target = settings.accuracy.penetration,
                          .inverseDt = 1 / (step.substepDt * impulseScale),
                          .softness = step.softness,
+                         .loadSoftness = LoadSoftnessOf(step),
                          .depthScale = 1 / (springs * springs),
                          .gravity = settings.gravity,
                          .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,

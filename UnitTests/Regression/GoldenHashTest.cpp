@@ -13,9 +13,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x93b55882a4c38091ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x772666b18672f1c8ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0xe210b54bd42bcd33ull;
+constexpr uint64_t kGoldenHash = 0x568e31de4c579909ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x26da398bda6c2fd0ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xdfb5f39c3541a15cull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
 constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7314e7ef10c8c8afull;
 
