@@ -32,6 +32,8 @@ constexpr double kGive = 1e-4, kLeastGive = 0.1;
 // Of a substep, on average, and as many at least as of so many substeps: more than that take longer than iterations in
 // the substeps that a load asks for. They balance nothing else.
 constexpr uint32_t kMostFactorizations = 8, kLeastSubsteps = 4;
+// Of a solution with contacts: more than that takes what would not be solved so for long.
+constexpr uint32_t kMostWithContacts = 40;
 // Geometric stiffness acts where h^2 k / m exceeds this.
 constexpr double kResolved = 0.3;
 
@@ -353,7 +355,10 @@ size_t DirectIsland::AddJoints() {
 bool DirectIsland::Solve(std::span<DirectRow> rows, ScratchArena& scratch) {
     const DirectProblem problem{island_, rows, isWhole_ ? contacts_.Patches() : std::span<const DirectPatch>(),
                                 stiffness_.first(stiffnessCount_)};
-    const DirectSettings how{.tolerance = tolerance_, .limitTolerance = kLimitTolerance * speed_, .speed = speed_};
+    const DirectSettings how{.tolerance = tolerance_,
+                             .limitTolerance = kLimitTolerance * speed_,
+                             .speed = speed_,
+                             .mostFactorizations = isWhole_ ? kMostWithContacts : DirectSettings{}.mostFactorizations};
     const DirectResult result = SolveDirectly(problem, pattern_, how, factor_, solved_, scratch);
     isFactorCurrent_ |= result.factorizations > 0;
     factorizations_ += result.factorizations;
@@ -389,19 +394,21 @@ bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
 }
 
 bool DirectIsland::MayBeWhole(const ContactRecord* records) const {
-    const auto mayBe = [&](uint32_t body) { return bodies_.cold[body].directMisses < kMostMisses; };
+    const auto mayBe = [&](uint32_t body) { return !HasManyMisses(bodies_.cold[body]); };
     return contacts_.AreAny() && contacts_.CanBeRows(records) &&
            std::ranges::all_of(std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size()), mayBe);
 }
 
 bool DirectIsland::NoteMisses() {
-    const bool isMiss = factorizations_ > kMostFactorizations * std::max(solutions_, kLeastSubsteps);
+    const uint32_t times = factorizations_ / (kMostFactorizations * std::max(solutions_, kLeastSubsteps));
     bool areMany = false;
     for (const uint32_t body : std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size())) {
-        uint8_t& misses = bodies_.cold[body].directMisses;
-        if (isMiss) ++misses;
+        BodyCold& cold = bodies_.cold[body];
+        uint32_t misses = cold.directMisses & ~uint32_t{kWasDirect};
+        if (times > 0) misses = std::min<uint32_t>(misses + times, kMostMisses);
         else if (misses > 0) --misses;
-        areMany |= misses == kMostMisses;
+        cold.directMisses = static_cast<uint8_t>(misses | kWasDirect);
+        areMany |= HasManyMisses(cold);
     }
     if (areMany) contacts_.ForgetImpulses();
     return areMany;

@@ -21,8 +21,12 @@ public:
     const SolverGroup& Group() const { return group_; }
     bool HasJoints() const { return hasJoints_; }
     bool HasContacts() const { return contacts_.AreAny(); }
-    // Not for direct solutions with contacts are islands of which those of so many steps took long.
-    static constexpr uint8_t kMostMisses = 8;
+    // Not for direct solutions with contacts are islands of which so many steps took long: as many more as they took
+    // longer.
+    static constexpr uint8_t kMostMisses = 12;
+    // Added to BodyCold::directMisses of bodies that were solved so since they woke.
+    static constexpr uint8_t kWasDirect = 0x80;
+    static bool HasManyMisses(const BodyCold& body) { return (body.directMisses & ~kWasDirect) >= kMostMisses; }
     // Whether it has contacts, and all can be solved together. After Prepare.
     bool MayBeWhole(const ContactRecord* records) const;
     // At the end of the step, where it was solved whole: counts those steps, of all bodies. True if they are so many.

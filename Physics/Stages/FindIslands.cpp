@@ -24,6 +24,9 @@ using Kind = ConstraintColoring::Kind;
 constexpr DirectCost kMostCost = {10000, 6.5};
 constexpr uint32_t kMostBodies = 1024;
 
+// Slower than after a fall of so long.
+constexpr float kCalmSeconds = 0.13f;
+
 // usual: the system's substeps.
 void SetEffort(SolverGroup& group, const IslandEffort& effort, int usual) {
     group.effort = effort.least;
@@ -67,6 +70,8 @@ struct IslandTraits {
     bool mayContradict : 1 = false;  // some joints may contradict each other
     bool isIterated : 1 = false;     // contacts are not solved directly
     bool isLoaded : 1 = false;       // they are, because of loads
+    bool isMoving : 1 = false;       // some body does
+    bool wasDirect : 1 = false;      // some body was solved directly since it woke
     bool isHard : 1 = false;         // some are solved directly, where that costs little
 };
 
@@ -74,7 +79,7 @@ struct IslandTraits {
 // contacts took long, until they fall asleep.
 bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body) {
     const BodyDynamics& d = bodies.dynamics[body];
-    return !d.crowded && d.lockedAxes == LockedAxes::None && bodies.cold[body].directMisses < DirectIsland::kMostMisses;
+    return !d.crowded && d.lockedAxes == LockedAxes::None && !DirectIsland::HasManyMisses(bodies.cold[body]);
 }
 
 // Finds the patterns of hard islands, where these cost little.
@@ -205,10 +210,18 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         its.mayContradict = true;
         if (!its.hasContacts) its.hasHardJoints = true;
     }
+    // What falls or is thrown is no load yet, and its impacts take long: it begins where all are calm, and stays.
+    const float calm = kCalmSeconds * std::max(Length(step.settings.gravity), 1.0f);
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t root = result.rootOf[i], body = bodies.awake[i];
+        if (!efforts[root].isHard) continue;
+        if (bodies.cold[body].directMisses & DirectIsland::kWasDirect) traits[root].wasDirect = true;
+        if (!(Length(bodies.LinearVelocityOf(body)) < calm)) traits[root].isMoving = true;
+    }
     bool areAnyHard = false;
     for (uint32_t i = 0; i < count; ++i) {
         IslandTraits& its = traits[i];
-        its.isLoaded = efforts[i].isHard && !its.isIterated;
+        its.isLoaded = efforts[i].isHard && !its.isIterated && (its.wasDirect || !its.isMoving);
         its.isHard = (its.isLoaded || its.hasHardJoints) && !its.overflows;
         areAnyHard |= its.isHard;
     }
