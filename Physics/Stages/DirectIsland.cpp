@@ -314,7 +314,7 @@ DirectIsland::DirectIsland(BodyStore& bodies, SolverLayout& layout, const Solver
         rows += static_cast<size_t>(batch.count) * batch.rowCount;
     });
     hasJoints_ = lanes > 0;
-    tolerance_ = (contacts_.AreAny() ? kContactTolerance : kTolerance) * speed_;
+    tolerance_ = (group.isLoaded ? kContactTolerance : kTolerance) * speed_;
     const size_t count = group.bodiesEnd - group.bodiesBegin;
     island_ = scratch.Allocate<DirectBody>(count);
     rows_ = scratch.Allocate<DirectRow>(6 * lanes + 3 * rows + contacts_.MostRows());

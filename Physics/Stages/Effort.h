@@ -122,10 +122,10 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     }
     // With joints, overlaps are corrected in the poses, too: a push against rows that iterations do not satisfy would
     // part the joints, and a heavy load would be lifted again and again.
-    if (group.isDirect) contacts.slop = s.penetrationSlop;
+    if (group.isLoaded) contacts.slop = s.penetrationSlop;
     if (group.hasJoints && !corrects) {
         contacts.StopRecovery();
-        if (!group.isDirect) contacts.slop = std::max(s.penetrationSlop, s.solver.baumgarteSlop);
+        if (!group.isLoaded) contacts.slop = std::max(s.penetrationSlop, s.solver.baumgarteSlop);
         effort.impactIterations = 0;
         contacts.mostCorrection = std::max(s.contactPushSpeed, s.jointPushSpeed) * h;
     }

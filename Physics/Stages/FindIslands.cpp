@@ -221,7 +221,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     bool areAnyHard = false;
     for (uint32_t i = 0; i < count; ++i) {
         IslandTraits& its = traits[i];
-        its.isLoaded = efforts[i].isHard && !its.isIterated && (its.wasDirect || !its.isMoving);
+        its.isLoaded = efforts[i].isHard && !its.isIterated && !its.hasJoints && (its.wasDirect || !its.isMoving);
         its.isHard = (its.isLoaded || its.hasHardJoints) && !its.overflows;
         areAnyHard |= its.isHard;
     }
