@@ -491,7 +491,7 @@ void DirectIsland::CorrectPoses(const ContactSolveSettings& settings, ScratchAre
     double part = 1;
     if (isWhole_) {
         double wanted = 0, most = 0;
-        for (const DirectRow& row : problem.rows) wanted += std::abs(row.c);
+        for (const DirectRow& each : problem.rows) wanted += std::abs(each.c);
         for (size_t i = 0; i < island_.size(); ++i)
             for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(solved_[i].v[k] - island_[i].velocity[k]));
         if (most > wanted) part = wanted / most;

@@ -54,8 +54,8 @@ TEST(Targets, AreNamedAndSurviveTheirFile) {
     EXPECT_EQ(read.Value().effortReturns, 4);
 }
 
-// A cube on a light one: an island that is solved directly, in as many substeps as without a target. Its work is that of
-// its traversals: factorizations are not counted.
+// A cube on a light one: an island that is solved directly, in as many substeps as without a target. Its work is that
+// of its traversals: factorizations are not counted.
 TEST(Targets, WorkIsThatOfTheIslandsEffort) {
     const auto traversalsOf = [](const Setting& setting) {
         LabRun run(setting, 100, true, 1);
