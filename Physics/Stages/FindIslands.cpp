@@ -44,7 +44,7 @@ std::span<const IslandEffort> EffortsOf(const Array<SavedEffort>& saved, const B
     for (const SavedEffort& group : saved) {
         if (group.body == ~0u) continue;
         IslandEffort& effort = efforts[sets.Find(bodies.cold[group.body].awakePlace)];
-        effort.least = effort.asked = group.effort;
+        effort.least = group.effort;
         effort.isHard = group.isLoaded;
     }
     return efforts;
@@ -251,7 +251,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
             own.mayContradict = its.mayContradict || its.hasContacts;
             own.solvesJoints = its.hasHardJoints;
             own.isLoaded = its.isLoaded;
-            if (own.isLoaded) effort.least = effort.asked;
+            if (own.isLoaded) effort.least = {};
         }
         const bool differs = large && its.hasJoints != jointsOverflow;  // from the first group
         // A group of one island is solved by one worker: too slow for a large island, unless required.

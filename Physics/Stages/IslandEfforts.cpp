@@ -302,10 +302,7 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         const Joint& joint = joints.joints[entry.constraint];
         if (!joint.effort.IsAny() && !adaptsToGaps) return;
         const uint32_t body = MovingBodyOf(entry), root = sets.Find(bodies.cold[body].awakePlace);
-        if (joint.effort.IsAny()) {
-            RaiseLeast(efforts[root], joint.effort, body);
-            efforts[root].asked = efforts[root].least;
-        }
+        if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
         const LoadLevel& gap = joints.gaps[entry.constraint].load;
         if (!adaptsToGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
         const float need = ExcessOfLevel(gap.level);

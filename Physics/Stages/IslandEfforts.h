@@ -14,7 +14,6 @@ namespace fulcrum {
 
 struct IslandEffort {
     LeastEffort least;
-    LeastEffort asked;       // by the settings of joints: part of `least`
     bool isLoaded = false;   // loads of contacts ask for it, or gaps of joints
     bool isHard = false;     // contacts sink by more than they may with the settings' effort
     uint8_t stiffness = 0;   // with which loaded contacts were solved; 0: they are new
