@@ -132,15 +132,17 @@ FULCRUM_INLINE_IN_LOOP void VisitOddities(Stream& s, Cold& body, bool isOdd) {
         body.directMisses = 0;
         body.lastPush = {};
         body.gravity = Vector3::Zero();
-        body.isSteady = body.isWorld = body.hasGravity = false;
+        body.isSteady = body.isWorld = body.hasGravity = body.wasDirect = false;
         if (!isOdd) body.keptMass = nullptr;
     }
     if (!isOdd) return;
-    const uint8_t bits = VisitBits(s, body.isSteady, body.hasGravity, body.keptMass != nullptr, body.isWorld);
+    const uint8_t bits =
+        VisitBits(s, body.isSteady, body.hasGravity, body.keptMass != nullptr, body.isWorld, body.wasDirect);
     if constexpr (!Stream::kWrites) {
         body.isSteady = bits & 1;
         body.hasGravity = bits >> 1 & 1;
         body.isWorld = bits >> 3 & 1;
+        body.wasDirect = bits >> 4 & 1;
         if (!(bits >> 2 & 1)) body.keptMass = nullptr;
         else if (!body.keptMass) body.keptMass = std::make_unique<KeptMass>();
     }
@@ -156,14 +158,14 @@ FULCRUM_INLINE_IN_LOOP void VisitOddities(Stream& s, Cold& body, bool isOdd) {
 template <class Stream, class Cold>
 FULCRUM_INLINE_IN_LOOP bool VisitCold(Stream& s, Cold& body) {
     auto& [shape, userData, material, force, torque, penetrationTarget, filter, firstCollider, colliderCount, children,
-           generation, awakePlace, sleepingIsland, continuous, singleMove, directMisses, keptMass, lastPush, gravity,
-           placed, isSteady, exists, removed, isSensor, isWorld, hasGravity] = body;
+           generation, awakePlace, sleepingIsland, continuous, singleMove, directMisses, wasDirect, keptMass, lastPush,
+           gravity, placed, isSteady, exists, removed, isSensor, isWorld, hasGravity] = body;
     s(generation);
     // Members that few bodies use.
     bool isOdd = false;
     if constexpr (Stream::kWrites)
-        isOdd = singleMove != SingleMove::None || directMisses > 0 || keptMass || !lastPush.IsZero() || isSteady ||
-                isWorld || hasGravity;
+        isOdd = singleMove != SingleMove::None || directMisses > 0 || wasDirect || keptMass || !lastPush.IsZero() ||
+                isSteady || isWorld || hasGravity;
     const uint8_t bits = VisitBits(s, exists, placed, removed, isSensor, filter != nullptr, children != nullptr, isOdd);
     if constexpr (!Stream::kWrites) {
         exists = bits & 1;

@@ -64,16 +64,13 @@ DirectContacts::DirectContacts(BodyStore& bodies, SolverLayout& layout, const So
     std::ranges::fill(contacts_, Contact{});
 }
 
-bool DirectContacts::CanBeRows(const ContactRecord* records) const {
-    bool can = true;
-    VisitBatches([&]<int N, bool kFixedB>(const ContactBatch<N, kFixedB>& batch) {
-        can &= batch.gentle == 0 && !batch.isGuided;
-        for (int lane = 0; lane < batch.count; ++lane) {
-            can &= !records[batch.contact[lane]].Has(ContactRecord::kMassOverride);
-            if constexpr (kFixedB) can &= bodies_.dynamics[batch.bodyB[lane]].motion != MotionType::Kinematic;
-        }
+bool DirectContacts::MayBeSolvedDirectly(const ContactRecord* records) const {
+    bool mayBe = true;
+    VisitBatches([&](const auto& batch) {
+        for (int lane = 0; lane < batch.count; ++lane)
+            mayBe &= fulcrum::MayBeSolvedDirectly(bodies_, records[batch.contact[lane]], batch.bodyB[lane]);
     });
-    return can;
+    return mayBe;
 }
 
 bool DirectContacts::AddRows(std::span<const DirectBody> island, const ContactSolveSettings& settings,

@@ -12,6 +12,22 @@
 
 namespace fulcrum {
 
+// Not for direct solutions with contacts are islands of which so many steps took long: as many more as they took
+// longer.
+inline constexpr uint8_t kMostMisses = 12;
+
+// Whether a body's contacts may be: not those of bodies created inside each other, of those with locked axes, which
+// gained energy, and, until they fall asleep, of those of which solutions took long.
+inline bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body) {
+    const BodyDynamics& d = bodies.dynamics[body];
+    return !d.crowded && d.lockedAxes == LockedAxes::None && bodies.cold[body].directMisses < kMostMisses;
+}
+// The same of a contact with another body: not with masses of its own, nor with kinematic bodies, which press with any
+// force and wedge what is in their way.
+inline bool MayBeSolvedDirectly(const BodyStore& bodies, const ContactRecord& contact, uint32_t other) {
+    return !contact.Has(ContactRecord::kMassOverride) && bodies.dynamics[other].motion != MotionType::Kinematic;
+}
+
 class DirectContacts {
 public:
     // localOf: see DirectIsland. h: s, of a substep. give: m/s, by which a contact may give way.
@@ -21,10 +37,8 @@ public:
     bool AreAny() const { return !contacts_.empty(); }
     size_t MostRows() const { return contacts_.size() * (ContactRecord::kMaxPoints + 3); }
     std::span<const DirectPatch> Patches() const { return patches_.first(patchCount_); }
-    // Whether they can be rows: not those of bodies with masses of their own, with locked translations, or created
-    // inside each other, nor those with kinematic bodies, which press with any force and wedge what is in their way.
-    // After Prepare.
-    bool CanBeRows(const ContactRecord* records) const;
+    // See MayBeSolvedDirectly.
+    bool MayBeSolvedDirectly(const ContactRecord* records) const;
 
     // Appends the rows to the first `count` of `rows`, with the impulses of the last substep. island: bodies with the
     // velocities that they have without constraints. False if some contact bounces.

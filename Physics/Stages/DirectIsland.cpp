@@ -313,7 +313,6 @@ DirectIsland::DirectIsland(BodyStore& bodies, SolverLayout& layout, const Solver
         lanes += static_cast<size_t>(batch.count);
         rows += static_cast<size_t>(batch.count) * batch.rowCount;
     });
-    hasJoints_ = lanes > 0;
     tolerance_ = (group.isLoaded ? kContactTolerance : kTolerance) * speed_;
     const size_t count = group.bodiesEnd - group.bodiesBegin;
     island_ = scratch.Allocate<DirectBody>(count);
@@ -353,12 +352,12 @@ size_t DirectIsland::AddJoints() {
 }
 
 bool DirectIsland::Solve(std::span<DirectRow> rows, ScratchArena& scratch) {
-    const DirectProblem problem{island_, rows, isWhole_ ? contacts_.Patches() : std::span<const DirectPatch>(),
+    const DirectProblem problem{island_, rows, contacts_.Patches(),
                                 stiffness_.first(stiffnessCount_)};
     const DirectSettings how{.tolerance = tolerance_,
                              .limitTolerance = kLimitTolerance * speed_,
                              .speed = speed_,
-                             .mostFactorizations = isWhole_ ? kMostWithContacts : DirectSettings{}.mostFactorizations};
+                             .mostFactorizations = group_.isLoaded ? kMostWithContacts : DirectSettings{}.mostFactorizations};
     const DirectResult result = SolveDirectly(problem, pattern_, how, factor_, solved_, scratch);
     isFactorCurrent_ |= result.factorizations > 0;
     factorizations_ += result.factorizations;
@@ -378,7 +377,6 @@ void DirectIsland::WriteVelocities() {
 }
 
 bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
-    isWhole_ = false;
     SetBodies(from);
     size_t count = AddJoints();
     for (const DirectRow& row : across_.first(acrossCount_)) rows_[count++] = row;
@@ -393,9 +391,9 @@ bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
     return true;
 }
 
-bool DirectIsland::MayBeWhole(const ContactRecord* records) const {
-    const auto mayBe = [&](uint32_t body) { return !HasManyMisses(bodies_.cold[body]); };
-    return contacts_.AreAny() && contacts_.CanBeRows(records) &&
+bool DirectIsland::MaySolveContacts(const ContactRecord* records) const {
+    const auto mayBe = [&](uint32_t body) { return MayBeSolvedDirectly(bodies_, body); };
+    return contacts_.MayBeSolvedDirectly(records) &&
            std::ranges::all_of(std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size()), mayBe);
 }
 
@@ -404,23 +402,21 @@ bool DirectIsland::NoteMisses() {
     bool areMany = false;
     for (const uint32_t body : std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size())) {
         BodyCold& cold = bodies_.cold[body];
-        uint32_t misses = cold.directMisses & ~uint32_t{kWasDirect};
-        if (times > 0) misses = std::min<uint32_t>(misses + times, kMostMisses);
+        uint8_t& misses = cold.directMisses;
+        if (times > 0) misses = static_cast<uint8_t>(std::min<uint32_t>(misses + times, kMostMisses));
         else if (misses > 0) --misses;
-        cold.directMisses = static_cast<uint8_t>(misses | kWasDirect);
-        areMany |= HasManyMisses(cold);
+        cold.wasDirect = true;
+        areMany |= misses == kMostMisses;
     }
     if (areMany) contacts_.ForgetImpulses();
     return areMany;
 }
 
-bool DirectIsland::SolveAll(const ContactSolveSettings& settings, ScratchArena& scratch) {
-    isWhole_ = true;
+bool DirectIsland::SolveContacts(const ContactSolveSettings& settings, ScratchArena& scratch) {
     ++solutions_;
     SetBodies(From::Unconstrained);
-    size_t count = AddJoints();
+    size_t count = 0;
     if (!contacts_.AddRows(island_, settings, rows_, count)) return false;
-    for (const DirectRow& row : across_.first(acrossCount_)) rows_[count++] = row;
     const std::span<DirectRow> rows = rows_.first(count);
     // Where impulses turn out to be larger than the last ones, once more with rows as stiff as they ask for.
     do {
@@ -441,7 +437,7 @@ Twist<float> DisplacementOf(const BodyState& state) {
 }  // namespace
 
 void DirectIsland::NotePlaces(const ContactSolveSettings& settings) {
-    if (isWhole_) contacts_.UpdateSeparations(settings);
+    if (group_.isLoaded) contacts_.UpdateSeparations(settings);
     for (size_t i = 0; i < places_.size(); ++i)
         places_[i] = DisplacementOf(bodies_.states[layout_.bodies[group_.bodiesBegin + i]]);
 }
@@ -477,19 +473,17 @@ void DirectIsland::CorrectPoses(const ContactSolveSettings& settings, ScratchAre
             island_[i].velocity[3 + k] = double{now.angular[k] - places_[i].angular[k]};
         }
     }
-    const bool isWanted =
-        isWhole_ ? contacts_.AddCorrections(rows_, settings, corrections_, count) || hasJoints_ : hasJoints_;
-    if (!isWanted) return;
+    if (group_.isLoaded && !contacts_.AddCorrections(rows_, settings, corrections_, count)) return;
     const DirectProblem problem{island_, corrections_.first(count), {}, {}};
     const DirectSettings how{.tolerance = kPoseTolerance * speed_ * h_, .speed = speed_ * h_};
-    const bool isFound = isWhole_ ? SolveDirectly(problem, pattern_, how, factor_, solved_, scratch).outcome ==
+    const bool isFound = group_.isLoaded ? SolveDirectly(problem, pattern_, how, factor_, solved_, scratch).outcome ==
                                         DirectResult::Outcome::Solved
                                   : StepDirectly(problem, pattern_, factor_, solved_, scratch);
     if (!isFound) return;
     // Of bodies that are wedged, no row resists a motion along the wedge: none moves farther than all rows together ask
     // for.
     double part = 1;
-    if (isWhole_) {
+    if (group_.isLoaded) {
         double wanted = 0, most = 0;
         for (const DirectRow& each : problem.rows) wanted += std::abs(each.c);
         for (size_t i = 0; i < island_.size(); ++i)
@@ -515,7 +509,7 @@ void DirectIsland::CorrectPoses(const ContactSolveSettings& settings, ScratchAre
         state.halfTurn[0] = half.x();
         state.halfTurn[1] = half.y();
     }
-    if (isWhole_) contacts_.UpdateSeparations(settings);
+    if (group_.isLoaded) contacts_.UpdateSeparations(settings);
 }
 
 }  // namespace fulcrum

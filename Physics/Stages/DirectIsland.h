@@ -1,8 +1,8 @@
 // An island that is solved directly (Constraints/Direct): between its batches and the direct solver. Fills the rows
 // from the batches, writes velocities and impulses back, and moves the poses by what joints and contacts are off.
-// Either all constraints are solved together, or the joints alone, where contacts bounce or cannot be rows: to these
-// iterations all joints together are one more constraint. Used by Solve, one thread per island. The group of the island
-// has no other; its joints are all in JointBatches.
+// Either its joints are solved, where contacts, too, are iterated: to these iterations all joints together are one more
+// constraint. Or, in islands under load, which have no joints, its contacts. Used by Solve, one thread per island. The
+// group of the island has no other; its joints are all in JointBatches.
 #pragma once
 
 #include <Fulcrum/Constraints/Direct/DirectSolver.h>
@@ -19,17 +19,10 @@ public:
                  std::span<uint32_t> localOf, ScratchArena& scratch);
 
     const SolverGroup& Group() const { return group_; }
-    bool HasJoints() const { return hasJoints_; }
     bool HasContacts() const { return contacts_.AreAny(); }
-    // Not for direct solutions with contacts are islands of which so many steps took long: as many more as they took
-    // longer.
-    static constexpr uint8_t kMostMisses = 12;
-    // Added to BodyCold::directMisses of bodies that were solved so since they woke.
-    static constexpr uint8_t kWasDirect = 0x80;
-    static bool HasManyMisses(const BodyCold& body) { return (body.directMisses & ~kWasDirect) >= kMostMisses; }
-    // Whether it has contacts, and all can be solved together. After Prepare.
-    bool MayBeWhole(const ContactRecord* records) const;
-    // At the end of the step, where it was solved whole: counts those steps, of all bodies. True if they are so many.
+    // Whether its contacts may be solved in this step. After Prepare.
+    bool MaySolveContacts(const ContactRecord* records) const;
+    // At the end of a step in which they were: counts, of all bodies, steps that took long. True if they are many.
     bool NoteMisses();
 
     // What the velocities are without the joints: the unconstrained ones, or, where there are contacts, too, the
@@ -38,12 +31,11 @@ public:
 
     // The velocities and impulses of all joints. False if that takes too long: then both are as before.
     bool SolveJoints(From from, ScratchArena& scratch);
-    // The same of all constraints. False if a contact bounces, too.
-    bool SolveAll(const ContactSolveSettings& settings, ScratchArena& scratch);
+    // The same of all contacts. False if one bounces, too.
+    bool SolveContacts(const ContactSolveSettings& settings, ScratchArena& scratch);
 
     // A position iteration: before that of single rows notes where the bodies are. After it moves them so that J times
-    // the change of pose of both is minus the bias of the locks. The same for contacts after SolveAll. Adds no
-    // velocity.
+    // the change of pose of both is minus the bias of the locks; likewise for contacts under load. Adds no velocity.
     void NotePlaces(const ContactSolveSettings& settings);
     void CorrectPoses(const ContactSolveSettings& settings, ScratchArena& scratch);
 
@@ -61,9 +53,7 @@ private:
     DirectContacts contacts_;
     DirectPattern pattern_;
     DirectFactor factor_;
-    bool hasJoints_ = false;
-    bool isWhole_ = false;                         // all constraints were solved together last
-    uint32_t solutions_ = 0, factorizations_ = 0;  // of the whole, in this step
+    uint32_t solutions_ = 0, factorizations_ = 0;  // of contacts, in this step
     bool isFactorCurrent_ = false;                 // made with the Jacobians of this substep
     std::span<DirectBody> island_;
     std::span<DirectRow> rows_, across_, corrections_;

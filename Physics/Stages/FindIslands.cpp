@@ -1,6 +1,6 @@
 #include <Fulcrum/Physics/Stages/FindIslands.h>
 
-#include <Fulcrum/Physics/Stages/DirectIsland.h>
+#include <Fulcrum/Physics/Stages/DirectContacts.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
 #include <Fulcrum/Physics/Stages/IslandEfforts.h>
 #include <Fulcrum/Physics/World/UnionFind.h>
@@ -68,19 +68,12 @@ struct IslandTraits {
     bool hasJoints : 1 = false, hasContacts : 1 = false;
     bool hasHardJoints : 1 = false;  // they are solved directly, whatever touches them
     bool mayContradict : 1 = false;  // some joints may contradict each other
-    bool isIterated : 1 = false;     // contacts are not solved directly
+    bool isIterated : 1 = false;     // contacts may not be solved directly
     bool isLoaded : 1 = false;       // they are, because of loads
     bool isMoving : 1 = false;       // some body does
     bool wasDirect : 1 = false;      // some body was solved directly since it woke
     bool isHard : 1 = false;         // some are solved directly, where that costs little
 };
-
-// Not bodies created inside each other, those with locked axes, which gained energy, and those of which solutions with
-// contacts took long, until they fall asleep.
-bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body) {
-    const BodyDynamics& d = bodies.dynamics[body];
-    return !d.crowded && d.lockedAxes == LockedAxes::None && !DirectIsland::HasManyMisses(bodies.cold[body]);
-}
 
 // Finds the patterns of hard islands, where these cost little.
 class PatternFinder {
@@ -185,11 +178,8 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
                 return;
             }
             its.hasContacts = true;
-            // See DirectContacts::CanBeRows.
             const uint32_t other = entry.fixedA ? entry.bodyA : entry.bodyB;
-            if (kind == Kind::Fixed && bodies.dynamics[other].motion == MotionType::Kinematic) its.isIterated = true;
-            if (!pairs.massOverrides.empty() && pairs.records[entry.constraint].Has(ContactRecord::kMassOverride))
-                its.isIterated = true;
+            its.isIterated |= !MayBeSolvedDirectly(bodies, pairs.records[entry.constraint], other);
         });
     bool jointsOverflow = false;  // constraints without a color are solved with the first group
     if (coloring.HasOverflow())
@@ -215,7 +205,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t root = result.rootOf[i], body = bodies.awake[i];
         if (!efforts[root].isHard) continue;
-        if (bodies.cold[body].directMisses & DirectIsland::kWasDirect) traits[root].wasDirect = true;
+        if (bodies.cold[body].wasDirect) traits[root].wasDirect = true;
         if (!(Length(bodies.LinearVelocityOf(body)) < calm)) traits[root].isMoving = true;
     }
     bool areAnyHard = false;
@@ -249,7 +239,6 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         IslandEffort effort = efforts[i];
         if (own.isDirect) {
             own.mayContradict = its.mayContradict || its.hasContacts;
-            own.solvesJoints = its.hasHardJoints;
             own.isLoaded = its.isLoaded;
             if (own.isLoaded) effort.least = {};
         }

@@ -137,7 +137,7 @@ public:
     void SolveDirectlyWith(DirectIsland& island, ScratchArena& scratch) {
         direct_ = &island;
         directScratch_ = &scratch;
-        mayBeWhole_ = group_.isLoaded && island.MayBeWhole(stores_.pairs.records.data());
+        mayBeWhole_ = group_.isLoaded && island.MaySolveContacts(stores_.pairs.records.data());
     }
 
     // A group of small islands: one worker, from beginning to end.
@@ -226,26 +226,27 @@ private:
         for (const uint32_t body : bodies) starts_[body] = {};
     }
 
-    // Before the batches of a group that is solved directly. Everything at once, or, where a contact bounces or that
-    // takes too long, the joints, before contacts are iterated: once a substep is enough without contacts.
+    // Before the batches of a group that is solved directly. The contacts once a substep, unless one bounces or that
+    // takes too long; or the joints, before contacts are iterated: once a substep is enough without contacts.
     void SolveDirectly(Verb verb, uint8_t substep) {
         if (!SolvesJoints(verb)) return;
         const bool isFirst = verb == Verb::FirstVelocities;
-        const bool hasContacts = direct_->HasContacts(), solvesJoints = direct_->HasJoints() && group_.solvesJoints;
-        if (isFirst) isWhole_ = mayBeWhole_;
-        else if (isWhole_ || (isSolved_ && !hasContacts)) return;
+        directScratch_->Reset();
+        if (group_.isLoaded) {
+            if (isFirst)
+                isSolved_ = isWhole_ =
+                    mayBeWhole_ && direct_->SolveContacts(ContactSettingsAt(substep, 0.5f), *directScratch_);
+            return;
+        }
+        const bool hasContacts = direct_->HasContacts();
+        if (isSolved_ && !isFirst && !hasContacts) return;
         const auto solve = [&] {
             directScratch_->Reset();
-            if (isWhole_) return direct_->SolveAll(ContactSettingsAt(substep, 0.5f), *directScratch_);
             return direct_->SolveJoints(hasContacts ? DirectIsland::From::Current : DirectIsland::From::Unconstrained,
                                         *directScratch_);
         };
-        isSolved_ = (isWhole_ || solvesJoints) && solve();
-        if (isWhole_ && !isSolved_) {
-            isWhole_ = false;
-            isSolved_ = solvesJoints && solve();
-        }
-        if (!isSolved_ || !isFirst || !direct_->HasJoints()) return;
+        isSolved_ = solve();
+        if (!isSolved_ || !isFirst) return;
         // Joints have aimed by the velocities of the last substep: once more by those found.
         VisitBatches(layout_, group_, [&](auto& batch) {
             if constexpr (requires { batch.rowCount; })
@@ -463,9 +464,9 @@ private:
     LocalIterations local_;
     DirectIsland* direct_ = nullptr;  // if the group is solved directly
     ScratchArena* directScratch_ = nullptr;
-    bool mayBeWhole_ = false;  // then: its contacts may be solved directly, too
-    bool isSolved_ = false;    // joints directly, in the last pass
-    bool isWhole_ = false;     // everything, in this substep
+    bool mayBeWhole_ = false;  // then: its contacts may be solved directly
+    bool isSolved_ = false;    // directly, in the last pass
+    bool isWhole_ = false;     // then: the contacts
 };
 
 // Verbs that a group needs because of its joints.

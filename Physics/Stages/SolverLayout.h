@@ -30,8 +30,7 @@ struct SolverGroup {
     // bodies that have sunk with softer rows. 0: the stiffness of the actual substeps.
     uint8_t stiffness = 0, wantedStiffness = 0;
     bool isDirect = false;                         // one island, solved directly: see DirectIsland.h
-    bool isLoaded = false;                         // then: because of loads, with the effort of the system's settings
-    bool solvesJoints = false;                     // then: also where its contacts are iterated
+    bool isLoaded = false;                         // then: its contacts, because of loads; it has no joints
     bool mayContradict = false;                    // then: it has loops of joints, or contacts
     uint32_t patternBegin = 0, patternBlocks = 0;  // then: into SolverLayout::patternWords; DirectPattern::Blocks
     bool IsOwn() const { return isDirect || effort.IsAny(); }

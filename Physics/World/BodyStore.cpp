@@ -75,6 +75,7 @@ void BodyStore::MarkAwake(uint32_t index) {
     if (notesSleepChanges) sleepChanges.push_back(index);
     dynamics[index].slowSeconds = 0;
     cold[index].directMisses = 0;
+    cold[index].wasDirect = false;
     if (cold[index].placed) {
         placed.push_back(index);
         --placedAsleep_;

@@ -179,6 +179,7 @@ struct BodyCold {
     ContinuousCollision continuous = ContinuousCollision::Off;
     SingleMove singleMove = SingleMove::None;
     uint8_t directMisses = 0;  // steps in which direct solutions of its island took long; see Stages/DirectIsland.h
+    bool wasDirect = false;    // solved directly with its contacts since it woke
     std::unique_ptr<KeptMass> keptMass;  // null: that of a density of 1000 kg/m3
     BodyPush lastPush;                   // of the last step in which it was awake; see World/SteadyPushes.h
     Vector3 gravity = Vector3::Zero();   // m/s2, where hasGravity

@@ -73,7 +73,8 @@ void AddErrors(const ErrorFigures& errors, std::vector<ReportLine>& lines) {
     add("momentum", errors.momentum, Text("%.4g N s", errors.momentum.value));
     add("angular momentum", errors.angularMomentum, Text("%.4g N m s", errors.angularMomentum.value));
     add("push", errors.push, Energy(errors.push.value));
-    add("effort", errors.effort, Text("%.0f substeps", errors.effort.value));
+    add("effort", errors.effort,
+        Text("%.0f substeps%s", errors.effort.value, errors.solvesDirectly ? ", loads solved directly" : ""));
     lines.push_back({"Errors of a step, largest", "energy of all, all steps", Energy(errors.energyChange)});
 }
 
@@ -213,6 +214,7 @@ nlohmann::ordered_json ErrorsJson(const ErrorFigures& errors) {
             {"angular_momentum_n_m_s", worst(errors.angularMomentum)},
             {"push_j", worst(errors.push)},
             {"substeps", worst(errors.effort)},
+            {"solves_directly", errors.solvesDirectly},
             {"energy_change_j", errors.energyChange}};
 }
 

@@ -39,6 +39,7 @@ void NoteErrors(const SceneWorld& world, ErrorFigures& figures) {
     note(figures.push, errors.largestPushEnergy, body(errors.mostPushed));
     const IslandEffortReport& effort = report.mostEffort[0];
     note(figures.effort, effort.substeps, body(effort.culprit));
+    figures.solvesDirectly |= std::ranges::any_of(report.mostEffort, &IslandEffortReport::isDirect);
     figures.energyChange += errors.energyChange;
 }
 

@@ -41,6 +41,7 @@ struct ErrorFigures {
     WorstOfRun energyGain, momentum, angularMomentum;  // J, N s, N m s
     WorstOfRun push;                                   // J, of one body
     WorstOfRun effort;                                 // substeps; no value where the settings' always did
+    bool solvesDirectly = false;                       // contacts of some island of `effort`, because of a load
     double energyChange = 0;                           // J, summed over all steps
 };
 
