@@ -66,31 +66,32 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
         return PairChange::Dead;
 
     const PairShapes shapes = ShapesOf(stores.colliders, pair);
-    const PairReach reach(stores, pair, shapes);
-    if (pair.contact == PairStore::kNone && !pair.offset && reach.AreFarApart(stores, pair, shapes))
-        return PairChange::None;
-    const float reachAhead = reach.WithRotation(stores, pair, shapes);
-    if (pair.surface) return CollideWithSurface(stores, changes, index, reachAhead, findings);
+    if (pair.surface || pair.contact == PairStore::kNone) {
+        const PairReach reach(stores, pair, shapes);
+        if (pair.contact == PairStore::kNone && !pair.offset && reach.AreFarApart(stores, pair, shapes))
+            return PairChange::None;
+        if (pair.surface) return CollideWithSurface(stores, changes, index, reach, findings);
+    }
     const PairView view = ViewPair(stores, index);
     const bool hardlyMoved = pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact]);
     if (hardlyMoved && !stores.IsSecondPass()) {
         pair.kept = true;
         ++findings.kept;
-    } else {
-        findings.kept -= pair.kept;  // counted by an earlier pass
-        pair.kept = false;
-        Manifold manifold;
-        FindManifold(stores, view, reachAhead, manifold, findings);
-        if (pair.contact == PairStore::kNone) {
-            if (manifold.pointCount > 0) MakeContact(stores, view, index, manifold, findings);
-            return PairChange::None;
-        }
-        PairContact& contact = stores.pairs.contacts[pair.contact];
-        if (TurnsFromOthers(stores, view, manifold))
-            findings.turnedNormals.push_back({pair.bodyA, pair.bodyB, NormalOf(stores, pair)});
-        WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair), findings);
-        contact.reference = view.bInA;
+        return LookAtContact(stores, index, shapes, view.bInA, findings);
     }
+    findings.kept -= pair.kept;  // counted by an earlier pass
+    pair.kept = false;
+    Manifold manifold;
+    FindManifold(stores, view, PairReach(stores, pair, shapes).WithRotation(stores, pair, shapes), manifold, findings);
+    if (pair.contact == PairStore::kNone) {
+        if (manifold.pointCount > 0) MakeContact(stores, view, index, manifold, findings);
+        return PairChange::None;
+    }
+    PairContact& contact = stores.pairs.contacts[pair.contact];
+    if (TurnsFromOthers(stores, view, manifold))
+        findings.turnedNormals.push_back({pair.bodyA, pair.bodyB, NormalOf(stores, pair)});
+    WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair), findings);
+    contact.reference = view.bInA;
     return LookAtContact(stores, index, shapes, view.bInA, findings);
 }
 

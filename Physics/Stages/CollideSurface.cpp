@@ -113,8 +113,8 @@ void FindSurfaceManifolds(const CollideStores& stores, const PairView& view, uin
     findings.libccd += findings.surface.Counters();
 }
 
-PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange> changes, uint32_t first, float reach,
-                              WorkerFindings& findings) {
+PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange> changes, uint32_t first,
+                              const PairReach& reach, WorkerFindings& findings) {
     bool touches = false;
     VisitManifolds(stores.pairs, first, [&](uint32_t index) { touches |= stores.pairs.pairs[index].pointCount > 0; });
     const PairView view = ViewPair(stores, first);
@@ -126,7 +126,7 @@ PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange>
     } else {
         findings.kept -= stores.pairs.pairs[first].kept;  // counted by an earlier pass
         stores.pairs.pairs[first].kept = false;
-        FindSurfaceManifolds(stores, view, first, reach, findings);
+        FindSurfaceManifolds(stores, view, first, reach.WithRotation(stores, view.pair, view.shapes), findings);
         WriteSurfaceManifolds(stores, view, first, true, findings);
         for (const uint32_t m : findings.surfaceLeft)
             findings.more.push_back({first, m, findings.surface.Manifolds()[m]});

@@ -64,11 +64,11 @@ DirectContacts::DirectContacts(BodyStore& bodies, SolverLayout& layout, const So
     std::ranges::fill(contacts_, Contact{});
 }
 
-bool DirectContacts::MayBeSolvedDirectly(const ContactRecord* records) const {
+bool DirectContacts::MayBeSolvedDirectly(const PairStore& pairs) const {
     bool mayBe = true;
     VisitBatches([&](const auto& batch) {
         for (int lane = 0; lane < batch.count; ++lane)
-            mayBe &= fulcrum::MayBeSolvedDirectly(bodies_, records[batch.contact[lane]], batch.bodyB[lane]);
+            mayBe &= fulcrum::MayBeSolvedDirectly(bodies_, pairs, batch.contact[lane], batch.bodyB[lane]);
     });
     return mayBe;
 }

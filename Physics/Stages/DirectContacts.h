@@ -9,6 +9,7 @@
 #include <Fulcrum/Jobs/ScratchArena.h>
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
 #include <Fulcrum/Physics/World/BodyStore.h>
+#include <Fulcrum/Physics/World/PairStore.h>
 
 namespace fulcrum {
 
@@ -24,8 +25,9 @@ inline bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body) {
 }
 // The same of a contact with another body: not with masses of its own, nor with kinematic bodies, which press with any
 // force and wedge what is in their way.
-inline bool MayBeSolvedDirectly(const BodyStore& bodies, const ContactRecord& contact, uint32_t other) {
-    return !contact.Has(ContactRecord::kMassOverride) && bodies.dynamics[other].motion != MotionType::Kinematic;
+inline bool MayBeSolvedDirectly(const BodyStore& bodies, const PairStore& pairs, uint32_t contact, uint32_t other) {
+    const bool hasMasses = !pairs.massOverrides.empty() && pairs.records[contact].Has(ContactRecord::kMassOverride);
+    return !hasMasses && bodies.dynamics[other].motion != MotionType::Kinematic;
 }
 
 class DirectContacts {
@@ -38,7 +40,7 @@ public:
     size_t MostRows() const { return contacts_.size() * (ContactRecord::kMaxPoints + 3); }
     std::span<const DirectPatch> Patches() const { return patches_.first(patchCount_); }
     // See MayBeSolvedDirectly.
-    bool MayBeSolvedDirectly(const ContactRecord* records) const;
+    bool MayBeSolvedDirectly(const PairStore& pairs) const;
 
     // Appends the rows to the first `count` of `rows`, with the impulses of the last substep. island: bodies with the
     // velocities that they have without constraints. False if some contact bounces.

@@ -352,12 +352,12 @@ size_t DirectIsland::AddJoints() {
 }
 
 bool DirectIsland::Solve(std::span<DirectRow> rows, ScratchArena& scratch) {
-    const DirectProblem problem{island_, rows, contacts_.Patches(),
-                                stiffness_.first(stiffnessCount_)};
-    const DirectSettings how{.tolerance = tolerance_,
-                             .limitTolerance = kLimitTolerance * speed_,
-                             .speed = speed_,
-                             .mostFactorizations = group_.isLoaded ? kMostWithContacts : DirectSettings{}.mostFactorizations};
+    const DirectProblem problem{island_, rows, contacts_.Patches(), stiffness_.first(stiffnessCount_)};
+    const DirectSettings how{
+        .tolerance = tolerance_,
+        .limitTolerance = kLimitTolerance * speed_,
+        .speed = speed_,
+        .mostFactorizations = group_.isLoaded ? kMostWithContacts : DirectSettings{}.mostFactorizations};
     const DirectResult result = SolveDirectly(problem, pattern_, how, factor_, solved_, scratch);
     isFactorCurrent_ |= result.factorizations > 0;
     factorizations_ += result.factorizations;
@@ -391,9 +391,9 @@ bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
     return true;
 }
 
-bool DirectIsland::MaySolveContacts(const ContactRecord* records) const {
+bool DirectIsland::MaySolveContacts(const PairStore& pairs) const {
     const auto mayBe = [&](uint32_t body) { return MayBeSolvedDirectly(bodies_, body); };
-    return contacts_.MayBeSolvedDirectly(records) &&
+    return contacts_.MayBeSolvedDirectly(pairs) &&
            std::ranges::all_of(std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size()), mayBe);
 }
 
@@ -477,8 +477,8 @@ void DirectIsland::CorrectPoses(const ContactSolveSettings& settings, ScratchAre
     const DirectProblem problem{island_, corrections_.first(count), {}, {}};
     const DirectSettings how{.tolerance = kPoseTolerance * speed_ * h_, .speed = speed_ * h_};
     const bool isFound = group_.isLoaded ? SolveDirectly(problem, pattern_, how, factor_, solved_, scratch).outcome ==
-                                        DirectResult::Outcome::Solved
-                                  : StepDirectly(problem, pattern_, factor_, solved_, scratch);
+                                               DirectResult::Outcome::Solved
+                                         : StepDirectly(problem, pattern_, factor_, solved_, scratch);
     if (!isFound) return;
     // Of bodies that are wedged, no row resists a motion along the wedge: none moves farther than all rows together ask
     // for.

@@ -21,7 +21,7 @@ public:
     const SolverGroup& Group() const { return group_; }
     bool HasContacts() const { return contacts_.AreAny(); }
     // Whether its contacts may be solved in this step. After Prepare.
-    bool MaySolveContacts(const ContactRecord* records) const;
+    bool MaySolveContacts(const PairStore& pairs) const;
     // At the end of a step in which they were: counts, of all bodies, steps that took long. True if they are many.
     bool NoteMisses();
 

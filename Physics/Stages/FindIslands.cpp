@@ -179,7 +179,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
             }
             its.hasContacts = true;
             const uint32_t other = entry.fixedA ? entry.bodyA : entry.bodyB;
-            its.isIterated |= !MayBeSolvedDirectly(bodies, pairs.records[entry.constraint], other);
+            its.isIterated |= !MayBeSolvedDirectly(bodies, pairs, entry.constraint, other);
         });
     bool jointsOverflow = false;  // constraints without a color are solved with the first group
     if (coloring.HasOverflow())

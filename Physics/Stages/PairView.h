@@ -88,11 +88,10 @@ bool TurnsFromOthers(const CollideStores& stores, const PairView& view, const Ma
 void WriteManifold(const CollideStores& stores, const PairView& view, const Manifold& manifold, PairContact& contact,
                    ContactRecord& record, WorkerFindings& findings);
 
-// Updates the manifolds of a pair with a surface; `reach`, m: the speculative distance. Writes the changes of
-// additional manifolds to `changes`, and returns that of the first. Manifolds without a slot are added to
-// findings.more.
-PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange> changes, uint32_t pair, float reach,
-                              WorkerFindings& findings);
+// Updates the manifolds of a pair with a surface. Writes the changes of additional manifolds to `changes`, and returns
+// that of the first. Manifolds without a slot are added to findings.more.
+PairChange CollideWithSurface(const CollideStores& stores, std::span<PairChange> changes, uint32_t pair,
+                              const PairReach& reach, WorkerFindings& findings);
 
 // Creates slots for those, serially, in the order of the pairs.
 void AddMoreManifolds(const CollideStores& stores, PairUpdates& updates, std::span<WorkerFindings> workers);

@@ -137,7 +137,7 @@ public:
     void SolveDirectlyWith(DirectIsland& island, ScratchArena& scratch) {
         direct_ = &island;
         directScratch_ = &scratch;
-        mayBeWhole_ = group_.isLoaded && island.MaySolveContacts(stores_.pairs.records.data());
+        mayBeWhole_ = group_.isLoaded && island.MaySolveContacts(stores_.pairs);
     }
 
     // A group of small islands: one worker, from beginning to end.
