@@ -54,6 +54,27 @@ Vector3 NormalOf(const CollideStores& stores, const Pair& pair) {
     return Rotate(stores.bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2]));
 }
 
+// Of a pair with a contact, of convex shapes or with a plane.
+PairChange UpdateContact(const CollideStores& stores, uint32_t index, PairShapes shapes, WorkerFindings& findings) {
+    Pair& pair = stores.pairs.pairs[index];
+    PairContact& contact = stores.pairs.contacts[pair.contact];
+    const PairView view = ViewPair(stores, index);
+    if (!stores.IsSecondPass() && pair.pointCount > 0 && HardlyMoved(view, contact)) {
+        pair.kept = true;
+        ++findings.kept;
+        return LookAtContact(stores, index, shapes, view.bInA, findings);
+    }
+    findings.kept -= pair.kept;  // counted by an earlier pass
+    pair.kept = false;
+    Manifold manifold;
+    FindManifold(stores, view, PairReach(stores, pair, shapes).WithRotation(stores, pair, shapes), manifold, findings);
+    if (TurnsFromOthers(stores, view, manifold))
+        findings.turnedNormals.push_back({pair.bodyA, pair.bodyB, NormalOf(stores, pair)});
+    WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair), findings);
+    contact.reference = view.bInA;
+    return LookAtContact(stores, index, shapes, view.bInA, findings);
+}
+
 PairChange CollidePair(const CollideStores& stores, std::span<PairChange> changes, uint32_t index,
                        WorkerFindings& findings) {
     Pair& pair = stores.pairs.pairs[index];
@@ -66,33 +87,16 @@ PairChange CollidePair(const CollideStores& stores, std::span<PairChange> change
         return PairChange::Dead;
 
     const PairShapes shapes = ShapesOf(stores.colliders, pair);
-    if (pair.surface || pair.contact == PairStore::kNone) {
-        const PairReach reach(stores, pair, shapes);
-        if (pair.contact == PairStore::kNone && !pair.offset && reach.AreFarApart(stores, pair, shapes))
-            return PairChange::None;
-        if (pair.surface) return CollideWithSurface(stores, changes, index, reach, findings);
-    }
+    const bool hasContact = pair.contact != PairStore::kNone;
+    if (hasContact && !pair.surface) return UpdateContact(stores, index, shapes, findings);
+    const PairReach reach(stores, pair, shapes);
+    if (!hasContact && !pair.offset && reach.AreFarApart(stores, pair, shapes)) return PairChange::None;
+    if (pair.surface) return CollideWithSurface(stores, changes, index, reach, findings);
     const PairView view = ViewPair(stores, index);
-    const bool hardlyMoved = pair.pointCount > 0 && HardlyMoved(view, stores.pairs.contacts[pair.contact]);
-    if (hardlyMoved && !stores.IsSecondPass()) {
-        pair.kept = true;
-        ++findings.kept;
-        return LookAtContact(stores, index, shapes, view.bInA, findings);
-    }
-    findings.kept -= pair.kept;  // counted by an earlier pass
-    pair.kept = false;
     Manifold manifold;
-    FindManifold(stores, view, PairReach(stores, pair, shapes).WithRotation(stores, pair, shapes), manifold, findings);
-    if (pair.contact == PairStore::kNone) {
-        if (manifold.pointCount > 0) MakeContact(stores, view, index, manifold, findings);
-        return PairChange::None;
-    }
-    PairContact& contact = stores.pairs.contacts[pair.contact];
-    if (TurnsFromOthers(stores, view, manifold))
-        findings.turnedNormals.push_back({pair.bodyA, pair.bodyB, NormalOf(stores, pair)});
-    WriteManifold(stores, view, manifold, contact, stores.pairs.RecordOf(pair), findings);
-    contact.reference = view.bInA;
-    return LookAtContact(stores, index, shapes, view.bInA, findings);
+    FindManifold(stores, view, reach.WithRotation(stores, pair, shapes), manifold, findings);
+    if (manifold.pointCount > 0) MakeContact(stores, view, index, manifold, findings);
+    return PairChange::None;
 }
 
 // Prefetches data of the next pairs while this one is collided.

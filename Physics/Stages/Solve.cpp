@@ -137,7 +137,7 @@ public:
     void SolveDirectlyWith(DirectIsland& island, ScratchArena& scratch) {
         direct_ = &island;
         directScratch_ = &scratch;
-        mayBeWhole_ = group_.isLoaded && island.MaySolveContacts(stores_.pairs);
+        maySolveContacts_ = group_.isLoaded && island.MaySolveContacts(stores_.pairs);
     }
 
     // A group of small islands: one worker, from beginning to end.
@@ -167,10 +167,10 @@ public:
             if (corrects) {
                 directScratch_->Reset();
                 direct_->CorrectPoses(ContactSettingsAt(substep, 1), *directScratch_);
-                if (isWhole_) NoteOutdatedOfGroup(substep);
+                if (HasSolvedContacts()) NoteOutdatedOfGroup(substep);
             }
         }
-        if (mayBeWhole_) findings.loadsChanged |= direct_->NoteMisses();
+        if (maySolveContacts_) findings.loadsChanged |= direct_->NoteMisses();
     }
 
 private:
@@ -231,11 +231,10 @@ private:
     void SolveDirectly(Verb verb, uint8_t substep) {
         if (!SolvesJoints(verb)) return;
         const bool isFirst = verb == Verb::FirstVelocities;
-        directScratch_->Reset();
         if (group_.isLoaded) {
-            if (isFirst)
-                isSolved_ = isWhole_ =
-                    mayBeWhole_ && direct_->SolveContacts(ContactSettingsAt(substep, 0.5f), *directScratch_);
+            if (!isFirst) return;
+            directScratch_->Reset();
+            isSolved_ = maySolveContacts_ && direct_->SolveContacts(ContactSettingsAt(substep, 0.5f), *directScratch_);
             return;
         }
         const bool hasContacts = direct_->HasContacts();
@@ -254,6 +253,8 @@ private:
         });
         solve();
     }
+
+    bool HasSolvedContacts() const { return isSolved_ && group_.isLoaded; }
 
     void NoteOutdatedOfGroup(uint8_t substep) {
         VisitBatches(layout_, group_, [&](const auto& batch) {
@@ -309,7 +310,7 @@ private:
     void RunBatch(Verb verb, uint8_t substep, const JointSolveSettings&, ContactBatch<N, kFixedB>& batch,
                   WorkerFindings& findings) {
         BodyState* states = bodies_.states.data();
-        if (isWhole_ && (SolvesJoints(verb) || IsCorrection(verb))) return;
+        if (HasSolvedContacts() && (SolvesJoints(verb) || IsCorrection(verb))) return;
         switch (verb) {
             case Verb::WarmStart: WarmStartContacts(batch, states); break;
             case Verb::AddWarmStart: AddWarmStart(batch, starts_, ContactSettingsAt(substep, 0.5f)); break;
@@ -331,7 +332,7 @@ private:
             case Verb::Separations:
                 UpdateSeparations(batch, states, ContactSettingsAt(substep, 1));
                 NoteOutdated(batch, substep);
-                if (!isWhole_) local_.CheckDepths(batch, substep);
+                if (!HasSolvedContacts()) local_.CheckDepths(batch, substep);
                 break;
             case Verb::StoreOutdated:
                 if (MayBeFoundAgain(batch)) StoreContacts(batch, stores_.pairs.records.data());
@@ -464,9 +465,8 @@ private:
     LocalIterations local_;
     DirectIsland* direct_ = nullptr;  // if the group is solved directly
     ScratchArena* directScratch_ = nullptr;
-    bool mayBeWhole_ = false;  // then: its contacts may be solved directly
-    bool isSolved_ = false;    // directly, in the last pass
-    bool isWhole_ = false;     // then: the contacts
+    bool maySolveContacts_ = false;  // then: in this step, see DirectIsland
+    bool isSolved_ = false;  // directly, in the last pass: the contacts of an island under load, else the joints
 };
 
 // Verbs that a group needs because of its joints.

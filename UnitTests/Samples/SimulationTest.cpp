@@ -73,12 +73,16 @@ TEST(Simulation, ReportsErrorsWhereTheyAreMeasured) {
     ASSERT_TRUE(run.Value().errors);
     const ErrorFigures& errors = *run.Value().errors;
     EXPECT_EQ(errors.effort.whose.substr(0, 4), "box ");
-    EXPECT_EQ(errors.effort.value, 4);  // it is solved directly
+    EXPECT_EQ(errors.effort.value, 4);
+    EXPECT_TRUE(errors.solvesDirectly);
     EXPECT_EQ(errors.jointError.whose, "");
     EXPECT_NEAR(errors.energyChange, run.Value().energyAtEnd - run.Value().energyAtStart, 1);
     const std::string text = ReportText(ReportLines(scene, run.Value(), 1));
     EXPECT_NE(text.find("Errors of a step, largest"), std::string::npos) << text;
-    EXPECT_EQ(ReportJson("tower", run.Value(), 1)["errors"]["substeps"]["whose"], errors.effort.whose);
+    EXPECT_NE(text.find("loads solved directly"), std::string::npos) << text;
+    const auto json = ReportJson("tower", run.Value(), 1)["errors"];
+    EXPECT_EQ(json["substeps"]["whose"], errors.effort.whose);
+    EXPECT_EQ(json["solves_directly"], true);
     const auto plain = Build("tower");
     const auto without = Simulate(*plain, 0, 2, 1.0 / 60, 1, [] {});
     ASSERT_TRUE(without);
