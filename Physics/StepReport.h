@@ -18,7 +18,7 @@ struct IslandEffortReport {
     // body of a joint that asks for more effort, or of a load.
     BodyId culprit;
     uint32_t bodies = 0;  // dynamic ones in it
-    // Its contacts are solved directly, because of a load: in the settings' substeps.
+    // Its contacts are solved directly, because of a load: in the settings' substeps, or, at rest, in one.
     bool isDirect = false;
 };
 

@@ -8,6 +8,8 @@ namespace fulcrum {
 namespace {
 
 constexpr double kUnlimited = DirectRow::kUnlimited;
+// Friction within this part of its limit held.
+constexpr double kHolding = 0.999;
 
 // L L^T of a positive semidefinite matrix (xx, yy, zz, xy, xz, yz), by rows. Pivots within the rounding of a matrix of
 // floats are 0.
@@ -140,7 +142,9 @@ DirectModel::DirectModel(const DirectProblem& problem, const DirectPattern& patt
                         .speed = 0,
                         .stepSpeed = 0,
                         .impulse = from.impulse,
-                        .margin = isOneSided ? from.inverseGamma * margin : 0};
+                        .margin = isOneSided ? from.inverseGamma * margin : 0,
+                        .last = from.impulse,
+                        .wasLimited = false};
         }
         begin = end;
     }
@@ -159,17 +163,28 @@ DirectModel::DirectModel(const DirectProblem& problem, const DirectPattern& patt
                  .twistRadius = from.twistRadius,
                  .d = problem.rows[tangent].inverseGamma,
                  .limit = 0,
-                 .limitBefore = 0};
+                 .limitBefore = 0,
+                 .wasSliding = false};
         double sum = 0;
         for (uint32_t r = from.firstNormal; r < tangent; ++r) sum += std::max(rows_[r].impulse, 0.0);
-        for (uint32_t r = tangent; r < tangent + 3; ++r) {
+        for (uint32_t r = from.firstNormal; r < tangent + 3; ++r) {
             Row& row = rows_[r];
-            if (row.d > 0) row.c -= row.impulse / row.d;
-            row.margin = 0;
-            if (r < tangent + 2) row.d = 0;
+            if (row.d > 0 && (problem.isAtRest || r >= tangent)) row.c -= row.impulse / row.d;
+            if (r >= tangent) row.margin = 0;
+            if (r == tangent || r == tangent + 1) row.d = 0;
         }
         SetLimit(patch, sum > 0 ? from.friction * sum : kUnlimited);
+        const double x = rows_[tangent].last, y = rows_[tangent + 1].last, holding = kHolding * patch.limit;
+        patch.wasSliding = !(x * x + y * y <= holding * holding);
     }
+    for (Row& row : rows_) {
+        const double rest = row.hi < kUnlimited && row.lo > -kUnlimited ? (1 - kHolding) * row.hi : 0.0;
+        row.wasLimited = !(row.last > row.lo + rest && row.last < row.hi - rest);
+    }
+}
+
+bool DirectModel::HasLast() const {
+    return std::ranges::any_of(patches_, [](const Patch& patch) { return patch.limit < kUnlimited; });
 }
 
 void DirectModel::SetLimit(Patch& patch, double limit) {
@@ -228,9 +243,16 @@ void DirectModel::FindGradientOfMasses(std::span<const Column6> y) {
 
 double DirectModel::Evaluate(std::span<const Column6> y) {
     FindSpeeds(y);
-    for (Row& row : rows_) row.impulse = std::min(std::max(-row.d * row.speed, row.lo), row.hi);
+    for (Row& row : rows_) {
+        const double wanted = -row.d * row.speed;
+        row.impulse = !trustsLast_ ? std::min(std::max(wanted, row.lo), row.hi) : row.wasLimited ? row.last : wanted;
+    }
     for (const Patch& patch : patches_) {
         Row &first = rows_[patch.tangent], &second = rows_[patch.tangent + 1];
+        if (trustsLast_) {
+            for (Row* row : {&first, &second}) row->impulse = patch.wasSliding ? row->last : -patch.d * row->speed;
+            continue;
+        }
         const Sliding sliding(first.speed, second.speed, patch.d, patch.limit);
         first.impulse = -sliding.factor * first.speed;
         second.impulse = -sliding.factor * second.speed;
@@ -284,7 +306,9 @@ void DirectModel::Assemble(const BlockMatrix& matrix, bool withMargin) const {
         for (uint32_t r = run.begin; r < run.end; ++r) {
             const Row& row = rows_[r];
             const double wanted = -row.d * row.speed, margin = withMargin ? row.margin : 0;
-            if (!(row.d > 0 && wanted > row.lo - margin && wanted < row.hi + margin)) continue;
+            const bool isLimited =
+                trustsLast_ ? row.wasLimited : !(wanted > row.lo - margin && wanted < row.hi + margin);
+            if (!(row.d > 0) || isLimited) continue;
             if (products.IsFull()) AddToMatrix(products, run, matrix);
             products.Add(jacobians_[r].a, jacobians_[r].b, row.d);
         }
@@ -294,10 +318,10 @@ void DirectModel::Assemble(const BlockMatrix& matrix, bool withMargin) const {
         const Row &first = rows_[patch.tangent], &second = rows_[patch.tangent + 1];
         const Jacobian &j1 = jacobians_[patch.tangent], &j2 = jacobians_[patch.tangent + 1];
         const Sliding sliding(first.speed, second.speed, patch.d, patch.limit);
-        if (sliding.isSticking) {
+        if (trustsLast_ ? !patch.wasSliding : sliding.isSticking) {
             products.Add(j1.a, j1.b, patch.d);
             products.Add(j2.a, j2.b, patch.d);
-        } else {
+        } else if (!trustsLast_) {
             // Only across the motion: along it the impulse is constant.
             const double alongX = first.speed / sliding.length, alongY = second.speed / sliding.length;
             const auto across = [&](const Column6& x, const Column6& y) {

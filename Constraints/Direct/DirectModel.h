@@ -46,6 +46,12 @@ public:
 
     // The change of velocity by the last impulses.
     void Start(std::span<Column6> y) const;
+    // Whether rows are at their limits, here and there, as the last impulses say, instead of the velocities. Where
+    // little has changed those tell better: a stiff row's impulse changes with its velocity as much as with a rounding
+    // of it.
+    void TrustLast(bool trusts) { trustsLast_ = trusts; }
+    bool HasLast() const;  // whether some limited row has an impulse
+
     // Velocities of the rows, impulses and gradient at y. Returns the residual, m/s.
     double Evaluate(std::span<const Column6> y);
     std::span<const Column6> Gradient() const { return gradient_; }
@@ -77,7 +83,9 @@ private:
         double c, d, lo, hi;      // d: 1 / gamma, 0 in tangent rows
         double speed, stepSpeed;  // at y, and of the step
         double impulse;
-        double margin;  // impulse beyond the limits that counts as within
+        double margin;    // impulse beyond the limits that counts as within
+        double last;      // impulse before
+        bool wasLimited;  // and whether it was at a limit
     };
     struct Patch {
         uint32_t firstNormal, tangent;  // rows; the second tangent and twist follow
@@ -85,6 +93,7 @@ private:
         double friction, twistRadius;
         double d;                   // of the tangents
         double limit, limitBefore;  // N s
+        bool wasSliding;            // by the last impulses
     };
     // Consecutive rows of the same bodies.
     struct Run {
@@ -110,7 +119,7 @@ private:
     Slope SlopeAt(double factor, double start, double quadratic) const;
 
     const DirectPattern& pattern_;
-    bool isCovered_ = true, hasStiffness_ = false;
+    bool isCovered_ = true, hasStiffness_ = false, trustsLast_ = false;
     std::span<Body> bodies_;  // by place
     std::span<Jacobian> jacobians_;
     std::span<Row> rows_;

@@ -38,8 +38,8 @@ struct DirectRow {
 // Friction of a contact. Its rows: `normals` ones (lo 0, hi unlimited), then two tangents with the same inverseGamma,
 // then twist about the normal; all of the same pair of bodies. With N the sum of the normal impulses, the tangents'
 // impulse is in the disc of radius friction * N, that of the twist row at most twistRadius times as large. Limits of
-// the three rows are not read. They begin with their last impulses: what holds does not creep. N begins with the sum of
-// the last impulses; where that is 0, friction is unlimited until N is known.
+// the three rows are not read. With l its last impulse c of each of them is less by gamma l, so that what holds with l
+// does not creep. N begins with the sum of the last impulses; where that is 0, friction is unlimited until N is known.
 struct DirectPatch {
     uint32_t firstNormal, normals;
     double friction;     // > 0
@@ -57,6 +57,7 @@ struct DirectProblem {
     std::span<DirectRow> rows;
     std::span<const DirectPatch> patches;
     std::span<const DirectStiffness> stiffness;
+    bool isAtRest = false;  // then normals of patches do not give way to their last impulses, either
 };
 
 struct DirectSettings {

@@ -108,6 +108,16 @@ DirectResult SolveDirectly(const DirectProblem& problem, const DirectPattern& pa
     model.Start(y);
     y.back() = {};
 
+    // What rests has the last impulses but for their rounding.
+    if (!factor.isValid && model.HasLast()) {
+        model.TrustLast(true);
+        model.Evaluate(y);
+        model.Assemble(factor.matrix, false);
+        if (!search.Factor()) return result;
+        search.FindStep();
+        AddTo(y, step, 1);
+        model.TrustLast(false);
+    }
     bool mayChord = factor.isValid, isMarginRight = true, wasInside = false;
     double chord = 0;          // squared length of the last step, if that was a chord step; else 0
     uint32_t newtonSteps = 0;  // of this pass

@@ -17,6 +17,8 @@ namespace fulcrum {
 namespace {
 
 constexpr uint32_t kColors = ConstraintColoring::kColors;
+// Slower than gravity makes a body in this part of a step.
+constexpr float kResting = 0.01f;
 
 using Entry = ConstraintColoring::Entry;
 using Kind = ConstraintColoring::Kind;
@@ -159,6 +161,21 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     sort(Kind::Fixed, fixed, layout.fixed);
 }
 
+// What rests stays where it is with substeps of any length, if it is solved directly.
+void NoteResting(const StepContext& step, const BodyStore& bodies, SolverLayout& layout) {
+    const float most = kResting * Length(step.settings.gravity) * step.dt;
+    for (SolverGroup& group : layout.groups) {
+        if (!group.isLoaded) continue;
+        group.isResting = std::ranges::all_of(
+            std::span(layout.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),
+            [&](uint32_t body) {
+                return Length(bodies.LinearVelocityOf(body)) +
+                           Length(bodies.AngularVelocityOf(body)) * SizeOf(bodies.dynamics[body]) <
+                       most;
+            });
+    }
+}
+
 // Calls visit(index of the contact) for the contacts of a group.
 template <class Visit>
 void VisitContacts(const SolverLayout& layout, const SolverGroup& group, Visit&& visit) {
@@ -238,12 +255,10 @@ void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& color
     VisitContactsUnderLoad(layout, pairs, [&](const SolvedContact& contact) { described.contacts.push_back(contact); });
     std::ranges::sort(described.contacts, {}, &SolvedContact::pair);
     if (!described.areCurrent) return;
-    for (const SolverGroup& group : layout.groups) {
-        if (!group.effort.IsAny() && !group.isLoaded) continue;
-        const auto first = layout.bodies.begin() + group.bodiesBegin, last = layout.bodies.begin() + group.bodiesEnd;
-        const bool isFirst = &group == &layout.groups.front();
-        described.groups.push_back({isFirst ? ~0u : *std::min_element(first, last), group.culprit, group.effort,
-                                    group.stiffness, group.wantedStiffness, group.isLoaded});
+    for (const IslandWithEffort& island : layout.efforts) {
+        const SolverGroup& group = layout.groups[island.group];
+        described.groups.push_back(
+            {island.body, island.culprit, group.effort, group.stiffness, group.wantedStiffness, group.isLoaded});
     }
     std::ranges::sort(described.groups, {}, &SavedEffort::body);
 }
@@ -261,15 +276,16 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
         stiffen(layout.groups);
         stiffen(saved.groups);
     }
-    if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion) return;
+    if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion)
+        return NoteResting(step, bodies, layout);
     layout.version = coloring.Version();
     layout.loadVersion = pairs.loadVersion;
     const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, pairs, saved, scratch);
     const bool asSaved = saved.AreTaken(coloring, pairs);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
     FindHardMechanisms(bodies, coloring, joints, step.settings, layout.hard, scratch);
-    const Islands islands = FindIslands(step, bodies, coloring, joints, pairs, layout.hard,
-                                        asSaved ? &saved.groups : nullptr, layout.groups, layout.patternWords, scratch);
+    const Islands islands =
+        FindIslands(step, bodies, coloring, joints, pairs, asSaved ? &saved.groups : nullptr, layout, scratch);
     layout.islands = islands.islands;
     SortBodies(bodies, islands, layout, scratch);
     SortConstraints(bodies, coloring, islands, joints, layout, scratch);
@@ -280,6 +296,7 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
     SetContacts(layout.overflowFixed, overflow.Of(Kind::Fixed));
     MakeOverflowJoints(bodies, joints, coloring, layout.overflowJoints);
     ShareRows(layout);
+    NoteResting(step, bodies, layout);
     saved.areRestored = false;
 }
 

@@ -211,7 +211,7 @@ bool DirectContacts::AddCorrections(std::span<const DirectRow> rows, const Conta
                 } else {
                     added.c = within < 0 ? std::max(correction, -most) : within;
                 }
-                any |= added.c < 0;
+                any |= within < -RoundingOf(contact->size);
                 sum += row.impulse;
             });
             if (!contact->hasFriction) continue;

@@ -352,7 +352,8 @@ size_t DirectIsland::AddJoints() {
 }
 
 bool DirectIsland::Solve(std::span<DirectRow> rows, ScratchArena& scratch) {
-    const DirectProblem problem{island_, rows, contacts_.Patches(), stiffness_.first(stiffnessCount_)};
+    const DirectProblem problem{island_, rows, contacts_.Patches(), stiffness_.first(stiffnessCount_),
+                                group_.isResting};
     const DirectSettings how{
         .tolerance = tolerance_,
         .limitTolerance = kLimitTolerance * speed_,

@@ -85,7 +85,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     const SystemSettings& s = step.settings;
     Effort effort;
     effort.solver = s.solver;
-    effort.solver.substeps = std::max<int>(s.solver.substeps, group.effort.substeps);
+    effort.solver.substeps = group.isResting ? 1 : std::max<int>(s.solver.substeps, group.effort.substeps);
     effort.solver.velocityIterations = std::max<int>(s.solver.velocityIterations, group.effort.velocityIterations);
     effort.solver.positionIterations = std::max<int>(s.solver.positionIterations, group.effort.positionIterations);
     const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);

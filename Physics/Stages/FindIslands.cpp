@@ -30,37 +30,69 @@ constexpr float kCalmSeconds = 0.13f;
 // usual: the system's substeps.
 void SetEffort(SolverGroup& group, const IslandEffort& effort, int usual) {
     group.effort = effort.least;
-    group.culprit = effort.culprit;
     if (!effort.isLoaded || group.effort.substeps < usual) return;
     group.wantedStiffness = StiffnessOf(group.effort.substeps, usual, effort.longer);
     group.stiffness = effort.stiffness == 0 ? group.wantedStiffness : std::min(effort.stiffness, group.wantedStiffness);
 }
+void SetEffort(SolverGroup& group, const SavedEffort& saved) {
+    group.effort = saved.effort;
+    group.stiffness = saved.stiffness;
+    group.wantedStiffness = saved.wantedStiffness;
+}
 
-// By root; only efforts for which an island gets a group of its own.
-std::span<const IslandEffort> EffortsOf(const Array<SavedEffort>& saved, const BodyStore& bodies, UnionFind& sets,
-                                        ScratchArena& scratch) {
-    std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(bodies.awake.size());
-    std::fill(efforts.begin(), efforts.end(), IslandEffort{});
-    for (const SavedEffort& group : saved) {
-        if (group.body == ~0u) continue;
-        IslandEffort& effort = efforts[sets.Find(bodies.cold[group.body].awakePlace)];
-        effort.least = group.effort;
-        effort.isHard = group.isLoaded;
+// Of small islands: by root, what was saved of them, or null.
+std::span<const SavedEffort*> SavedOf(const Array<SavedEffort>& saved, const BodyStore& bodies, UnionFind& sets,
+                                      ScratchArena& scratch) {
+    std::span<const SavedEffort*> result = scratch.Allocate<const SavedEffort*>(bodies.awake.size());
+    std::ranges::fill(result, nullptr);
+    for (const SavedEffort& effort : saved)
+        if (effort.body != ~0u) result[sets.Find(bodies.cold[effort.body].awakePlace)] = &effort;
+    return result;
+}
+std::span<const IslandEffort> EffortsOf(std::span<const SavedEffort* const> saved, ScratchArena& scratch) {
+    std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(saved.size());
+    for (size_t i = 0; i < saved.size(); ++i) {
+        efforts[i] = {};
+        if (!saved[i]) continue;
+        efforts[i].least = saved[i]->effort;
+        efforts[i].culprit = saved[i]->culprit;
+        efforts[i].isHard = saved[i]->isLoaded;
     }
     return efforts;
 }
 
-void SetEfforts(const Array<SavedEffort>& saved, const BodyStore& bodies, const Islands& islands,
-                Array<SolverGroup>& groups) {
-    for (const SavedEffort& from : saved) {
-        SolverGroup& group =
-            groups[from.body == ~0u ? Islands::kLargeGroup : islands.groupOf[bodies.cold[from.body].awakePlace]];
-        group.effort = from.effort;
-        group.culprit = from.culprit;
-        group.stiffness = from.stiffness;
-        group.wantedStiffness = from.wantedStiffness;
+// The groups that small islands are added to, one for each effort.
+class OpenGroups {
+public:
+    // efforts: at most so many different ones.
+    OpenGroups(Array<SolverGroup>& groups, size_t efforts, ScratchArena& scratch)
+        : groups_(groups), open_(scratch.Allocate<Open>(2 * efforts)) {}
+
+    // The index of the group that an island of so many constraints is added to: one like `own`.
+    uint32_t Add(const SolverGroup& own, uint32_t constraints) {
+        const auto end = open_.begin() + count_;
+        auto to = std::find_if(open_.begin(), end, [&](const Open& open) {
+            const SolverGroup& group = groups_[open.group];
+            return group.hasJoints == own.hasJoints && group.effort == own.effort && group.stiffness == own.stiffness &&
+                   group.wantedStiffness == own.wantedStiffness;
+        });
+        if (to == end || to->constraints >= kSmallGroup) {
+            if (to == end) ++count_;
+            *to = {static_cast<uint32_t>(groups_.size()), 0};
+            groups_.push_back(own);
+        }
+        to->constraints += constraints;
+        return to->group;
     }
-}
+
+private:
+    struct Open {
+        uint32_t group, constraints;
+    };
+    Array<SolverGroup>& groups_;
+    std::span<Open> open_;
+    ptrdiff_t count_ = 0;
+};
 
 // By root.
 struct IslandTraits {
@@ -147,9 +179,10 @@ private:
 }  // namespace
 
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
-                    const JointStore& joints, const PairStore& pairs, const HardMechanisms& hard,
-                    const Array<SavedEffort>* saved, Array<SolverGroup>& groups, Array<uint32_t>& patternWords,
-                    ScratchArena& scratch) {
+                    const JointStore& joints, const PairStore& pairs, const Array<SavedEffort>* saved,
+                    SolverLayout& layout, ScratchArena& scratch) {
+    const HardMechanisms& hard = layout.hard;
+    Array<SolverGroup>& groups = layout.groups;
     const auto placeOf = [&](uint32_t body) { return bodies.cold[body].awakePlace; };
     const size_t count = bodies.awake.size();
     UnionFind sets(scratch.Allocate<uint32_t>(count));
@@ -185,8 +218,10 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     if (coloring.HasOverflow())
         for (const IslandTraits& its : traits) jointsOverflow |= its.overflows && its.hasJoints;
     const int usual = step.settings.solver.substeps;
+    const std::span<const SavedEffort* const> savedOf =
+        saved ? SavedOf(*saved, bodies, sets, scratch) : std::span<const SavedEffort*>();
     const std::span<const IslandEffort> efforts =
-        saved ? EffortsOf(*saved, bodies, sets, scratch)
+        saved ? EffortsOf(savedOf, scratch)
               : FindEfforts(step, bodies, coloring, joints, pairs, sizes,
                             step.settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, sets, scratch);
     Islands result;
@@ -216,12 +251,15 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         areAnyHard |= its.isHard;
     }
     std::optional<PatternFinder> patterns;
-    if (areAnyHard) patterns.emplace(bodies, coloring, result.rootOf, traits, patternWords, scratch);
+    if (areAnyHard) patterns.emplace(bodies, coloring, result.rootOf, traits, layout.patternWords, scratch);
     groups.assign(1, {.isLarge = true, .hasJoints = jointsOverflow});
-    // The groups that small islands are added to, those without joints and with joints.
-    struct OpenGroup {
-        uint32_t group = 0, constraints = kSmallGroup;  // so that the first small island starts a group
-    } open[2];
+    layout.efforts.clear();
+    const auto hasEffort = [](const IslandEffort& effort) { return effort.least.IsAny() || effort.isHard; };
+    const size_t ownEfforts = static_cast<size_t>(std::ranges::count_if(efforts, hasEffort));
+    // By root, into layout.efforts.
+    std::span<uint32_t> effortOf = scratch.Allocate<uint32_t>(ownEfforts > 0 ? count : 0);
+    std::ranges::fill(effortOf, Islands::kNone);
+    OpenGroups open(groups, 1 + ownEfforts, scratch);
     IslandEffort overflowing;
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t root = result.rootOf[i];
@@ -243,30 +281,49 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
             if (own.isLoaded) effort.least = {};
         }
         const bool differs = large && its.hasJoints != jointsOverflow;  // from the first group
-        // A group of one island is solved by one worker: too slow for a large island, unless required.
-        if (!its.overflows && (effort.least.IsAny() || own.isDirect || differs)) {
-            result.groupOf[i] = static_cast<uint32_t>(groups.size());
-            own.isLarge = large && !own.isDirect;
-            own.hasJoints = its.hasJoints || own.isDirect;
-            SetEffort(own, effort, usual);
-            groups.push_back(own);
-            continue;
-        }
-        if (large) {
+        if (large && (its.overflows || !(effort.least.IsAny() || own.isDirect || differs))) {
             result.groupOf[i] = Islands::kLargeGroup;
             if (its.overflows && effort.least.IsAny()) Raise(overflowing, effort);
             continue;
         }
-        OpenGroup& to = open[its.hasJoints];
-        if (to.constraints >= kSmallGroup) {
-            to = {static_cast<uint32_t>(groups.size()), 0};
-            groups.push_back({.hasJoints = its.hasJoints});
+        own.hasJoints = its.hasJoints || own.isDirect;
+        if (saved && savedOf[i]) SetEffort(own, *savedOf[i]);
+        else SetEffort(own, effort, usual);
+        // A group that is not large is solved by one worker: too slow for a large island, unless required.
+        own.isLarge = large && !own.isDirect;
+        if (own.isLarge || own.isDirect) {
+            result.groupOf[i] = static_cast<uint32_t>(groups.size());
+            groups.push_back(own);
+        } else {
+            result.groupOf[i] = open.Add(own, sizes[i]);
         }
-        result.groupOf[i] = to.group;
-        to.constraints += sizes[i];
+        if (!effort.least.IsAny() && !own.isLoaded) continue;
+        effortOf[i] = static_cast<uint32_t>(layout.efforts.size());
+        layout.efforts.push_back({.culprit = effort.culprit, .group = result.groupOf[i]});
     }
-    if (overflowing.least.IsAny()) SetEffort(groups[Islands::kLargeGroup], overflowing, usual);
-    if (saved) SetEfforts(*saved, bodies, result, groups);
+    for (uint32_t i = 0; i < effortOf.size(); ++i) {
+        if (effortOf[result.rootOf[i]] == Islands::kNone) continue;
+        IslandWithEffort& island = layout.efforts[effortOf[result.rootOf[i]]];
+        island.body = std::min(island.body, bodies.awake[i]);
+        ++island.bodies;
+    }
+    SolverGroup& first = groups[Islands::kLargeGroup];
+    const auto ofAll = [&](uint32_t culprit) {
+        layout.efforts.push_back(
+            {.culprit = culprit,
+             .bodies = static_cast<uint32_t>(std::ranges::count(result.groupOf, Islands::kLargeGroup)),
+             .group = Islands::kLargeGroup});
+    };
+    if (overflowing.least.IsAny()) {
+        SetEffort(first, overflowing, usual);
+        ofAll(overflowing.culprit);
+    }
+    if (saved)
+        for (const SavedEffort& effort : *saved) {
+            if (effort.body != ~0u) continue;
+            SetEffort(first, effort);
+            ofAll(effort.culprit);
+        }
     result.groups = static_cast<uint32_t>(groups.size());
     return result;
 }

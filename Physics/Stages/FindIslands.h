@@ -23,12 +23,11 @@ struct Islands {
     static constexpr uint32_t kLargeGroup = 0;  // see SolverGroup
 };
 
-// Finds islands and creates their groups, without bodies and colors, and the patterns of those that are solved
-// directly. Uses scratch memory of the step. saved: restored efforts, or null.
+// Finds islands and fills groups, without bodies and colors, efforts, and patternWords of the layout. Uses scratch
+// memory of the step. saved: restored efforts, or null.
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
-                    const JointStore& joints, const PairStore& pairs, const HardMechanisms& hard,
-                    const Array<SavedEffort>* saved, Array<SolverGroup>& groups, Array<uint32_t>& patternWords,
-                    ScratchArena& scratch);
+                    const JointStore& joints, const PairStore& pairs, const Array<SavedEffort>* saved,
+                    SolverLayout& layout, ScratchArena& scratch);
 
 // Calls visit(color, entry) for all constraints of a kind, those without a color last.
 template <class Visit>

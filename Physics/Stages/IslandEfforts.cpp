@@ -62,6 +62,9 @@ constexpr float kSlender = 8;
 constexpr float kBucklingOfLarge = 110;
 // Large islands get the effort at which a load of so many weights sinks a body by the allowed penetration.
 constexpr float kWeights = 2;
+// Islands for which so many passes over their rows in a step suffice get these, those of four substeps: a direct
+// solution of one takes as long as 60, of many islands together in full lanes.
+constexpr int kFewPasses = 8;
 // Minimum number of constraints of an island that may buckle.
 constexpr uint32_t kLeastHigh = 4;
 
@@ -277,6 +280,10 @@ SolverSettings EffortFor(float& need, bool hasGaps, const SystemSettings& settin
     return effort;
 }
 
+int PassesOf(const SolverSettings& effort) {
+    return effort.substeps * (effort.velocityIterations + effort.positionIterations);
+}
+
 }  // namespace
 
 void Raise(IslandEffort& effort, const IslandEffort& to) {
@@ -325,6 +332,8 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
         const float softer = needs[i].isStiff || sizes[i] > mostLoaded ? 1 : kLoadedSubstep * kLoadedSubstep;
         float need = needs[i].need * softer;
         const SolverSettings effort = EffortFor(need, needs[i].isStiff, step.settings);
+        if (effort.substeps > step.settings.solver.substeps && sizes[i] < kLeastHigh && PassesOf(effort) <= kFewPasses)
+            efforts[i].isHard = false;
         efforts[i].longer = std::sqrt(softer / std::clamp(0.5f * need, 1.0f, softer));
         RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
         efforts[i].isLoaded = true;

@@ -5,12 +5,12 @@
 namespace fulcrum {
 
 size_t HeapBytes(const SolverLayout& layout) {
-    const auto& [groups, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints, overflowMoving,
-                 overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion, hard, patternWords,
-                 notes, colorCount, islands, version, loadVersion] = layout;
-    return HeapBytes(groups, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints, overflowMoving,
-                     overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion, hard, patternWords,
-                     colorCount, islands, version, loadVersion);
+    const auto& [groups, efforts, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints,
+                 overflowMoving, overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion, hard,
+                 patternWords, notes, colorCount, islands, version, loadVersion] = layout;
+    return HeapBytes(groups, efforts, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints,
+                     overflowMoving, overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion,
+                     hard, patternWords, colorCount, islands, version, loadVersion);
 }
 
 }  // namespace fulcrum

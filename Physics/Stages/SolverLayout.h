@@ -16,24 +16,32 @@ namespace fulcrum {
 
 // Islands that are solved together. The first group contains the large islands, which are solved color by color on all
 // workers. Each other group contains some small islands, which one worker solves from start to end, in its own cache
-// and without barriers. The grouping does not influence results. Islands with joints share no group with others. An
-// island that is solved directly, one with an effort of its own, or a large one with joints, has a group of its own.
+// and without barriers. The grouping does not influence results. Islands share a group if they have the same effort,
+// and joints or none of them. An island that is solved directly, or a large one with joints, has a group of its own.
 struct SolverGroup {
     bool isLarge = false;                     // solved color by color on all workers
     bool hasJoints = false;                   // all islands of it have joints, or it is solved directly: see Solve
     uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
     uint32_t bodiesBegin = 0, bodiesEnd = 0;  // into SolverLayout::bodies
     LeastEffort effort{};                     // minimum effort, if more than the system's
-    uint32_t culprit = ~0u;                   // the body that requires most of it
     // For islands under load: the substep that determines the stiffness of soft rows, as a fraction of the system's:
     // 2^(-(i - 9) / 16) (Effort.h). It follows shorter substeps slowly: a sudden increase of stiffness would accelerate
     // bodies that have sunk with softer rows. 0: the stiffness of the actual substeps.
     uint8_t stiffness = 0, wantedStiffness = 0;
     bool isDirect = false;                         // one island, solved directly: see DirectIsland.h
     bool isLoaded = false;                         // then: its contacts, because of loads; it has no joints
+    bool isResting = false;                        // then: it is at rest in this step, which takes one substep
     bool mayContradict = false;                    // then: it has loops of joints, or contacts
     uint32_t patternBegin = 0, patternBlocks = 0;  // then: into SolverLayout::patternWords; DirectPattern::Blocks
     bool IsOwn() const { return isDirect || effort.IsAny(); }
+};
+
+// An island with an effort of its own, or that is solved directly because of loads; or all large ones that share one.
+struct IslandWithEffort {
+    uint32_t body = ~0u;  // the lowest index; ~0u: large ones
+    uint32_t culprit;     // the body that requires most of it
+    uint32_t bodies = 0;  // their number
+    uint32_t group;
 };
 
 // Kinds of batches of a color, in the order of solving.
@@ -76,6 +84,7 @@ struct ListedJoint {
 
 struct SolverLayout {
     Array<SolverGroup> groups;  // empty: nothing to solve
+    Array<IslandWithEffort> efforts;
     Array<ColorBatches> colors;
     Array<uint32_t> bodies;    // dynamic bodies with constraints, by group; sorted in groups with joints
     Array<uint32_t> islandOf;  // by place in `bodies`, of groups with joints: the island, from 0 in each group

@@ -257,15 +257,16 @@ void RunStages(WorldState& world, StepState& state, const StepContext& step) {
 
 const char* StageName(int stage) { return kStages[stage].name; }
 
-// An island with an effort of its own is a group of its own.
 void VisitEfforts(const SolverSettings& settings, const BodyStore& bodies, const SolverLayout& layout,
                   FunctionRef<void(const IslandEffortReport&)> visit) {
-    for (const SolverGroup& group : layout.groups)
+    for (const IslandWithEffort& island : layout.efforts) {
+        const SolverGroup& group = layout.groups[island.group];
         if (group.effort.Exceeds(settings) || group.isLoaded)
             visit({std::max<int>(group.effort.substeps, settings.substeps),
                    std::max<int>(group.effort.velocityIterations, settings.velocityIterations),
                    std::max<int>(group.effort.positionIterations, settings.positionIterations),
-                   bodies.IdOf(group.culprit), group.bodiesEnd - group.bodiesBegin, group.isLoaded});
+                   bodies.IdOf(island.culprit), island.bodies, group.isLoaded});
+    }
 }
 
 void RunStep(WorldState& world, StepState& state, double dt) {

@@ -1,6 +1,10 @@
 // What the report says of islands that were solved with more than the settings' effort: how much, and for whom.
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
+#include <algorithm>
+#include <memory>
+#include <vector>
+
 namespace fulcrum::testing {
 namespace {
 
@@ -35,6 +39,41 @@ TEST(EffortReport, IsEmptyForAPlainPile) {
         EXPECT_EQ(world.Report().islandsWithMoreEffort, 0u) << step;
         EXPECT_EQ(world.Report().mostEffort[0].substeps, 0) << step;
     }
+}
+
+// Islands that ask for the same effort are solved together, in lanes: each moves as it would alone, and is reported.
+TEST(EffortReport, IslandsOfEqualEffortMoveAsAlone) {
+    SystemSettings settings = NoSleep();
+    settings.solver.substeps = 1;
+    TestWorld many(settings);
+    many.AddFloor();
+    std::vector<std::unique_ptr<TestWorld>> alone;
+    std::vector<BodyId> ids, single;
+    for (int i = 0; i < 9; ++i) {
+        const Position at{0, 0.503, 4.0 * i};
+        ids.push_back(AddCube(many, at));
+        alone.push_back(std::make_unique<TestWorld>(settings));
+        alone.back()->AddFloor();
+        single.push_back(AddCube(*alone.back(), at));
+    }
+    uint32_t most = 0;
+    for (int step = 0; step < 60; ++step) {
+        many.Step();
+        uint32_t count = 0;
+        for (size_t i = 0; i < ids.size(); ++i) {
+            alone[i]->Step();
+            count += alone[i]->Report().islandsWithMoreEffort;
+            EXPECT_EQ(many.PositionOf(ids[i]), alone[i]->PositionOf(single[i])) << step << ", " << i;
+        }
+        const StepReport& report = many.Report();
+        ASSERT_EQ(report.islandsWithMoreEffort, count) << step;
+        most = std::max(most, count);
+        if (count == 0) continue;
+        EXPECT_EQ(report.mostEffort[0].substeps, 2);
+        EXPECT_EQ(report.mostEffort[0].bodies, 1u);
+        EXPECT_FALSE(report.mostEffort[0].isDirect);
+    }
+    EXPECT_EQ(most, 9u);
 }
 
 // Measured by the springs of the steps of 1/240 s in between, efforts for those of 1/30 s would come and go for ever.

@@ -13,9 +13,9 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xcb0be34f7b8e3be3ull;
+constexpr uint64_t kGoldenHash = 0x831c431d82d47248ull;
 constexpr uint64_t kGoldenHashOfJoints = 0x640f96146373d975ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x3f31d2d19bc8fd5dull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x1cd6dd817440384bull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
 constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7314e7ef10c8c8afull;
 

@@ -27,6 +27,7 @@ struct IslandOfRows {
     std::vector<DirectStiffness> stiffness;
     std::vector<DirectVelocity> velocities;
     DirectSettings settings{.tolerance = 1e-10};
+    bool isAtRest = false;
     DirectFactor factor;
     DirectPattern pattern;
 
@@ -78,7 +79,8 @@ struct IslandOfRows {
     }
     // With the factor of the last solution, if there is one.
     DirectResult SolveAgain() {
-        return SolveDirectly({bodies, rows, patches, stiffness}, pattern, settings, factor, velocities, arena_);
+        return SolveDirectly({bodies, rows, patches, stiffness, isAtRest}, pattern, settings, factor, velocities,
+                             arena_);
     }
     DirectResult Solve() {
         FindPattern();

@@ -212,6 +212,43 @@ TEST(DirectSolver, BlockSticksWithinTheConeAndDoesNotCreep) {
     EXPECT_NEAR(block.Normal(), 2 * kFall * std::cos(0.5) * 1000 / 1002, 1e-9);
 }
 
+// At rest each solution takes over what the one before has found, and leaves 2 / 1002 of the rest.
+TEST(DirectSolver, BlockAtRestDoesNotSink) {
+    Block block(0.5, std::tan(0.5) * 1.01);
+    block.island.isAtRest = true;
+    const double weight = 2 * kFall * std::cos(0.5);
+    double left = weight;
+    for (int i = 0; i < 4; ++i) {
+        ASSERT_EQ(block.island.Solve().outcome, Outcome::Solved);
+        left *= 2.0 / 1002;
+        EXPECT_NEAR(block.Normal(), weight - left, 1e-9) << i;
+        EXPECT_NEAR(block.Velocity()[2], -left / 2, 1e-9) << i;
+    }
+}
+
+// A rounding of a stiff row's impulse is a large change of its velocity. The last impulses tell that the second row,
+// which hardly carries anything, is not at its limit: else it would take another factorization to find out.
+TEST(DirectSolver, WhatRestsTakesOneFactorization) {
+    for (int i = 0; i < 8; ++i) {
+        const double load = 1 + 0.05 * i;
+        Block block(0, 1);
+        block.island.bodies[0].velocity[2] *= load;
+        std::vector<DirectRow>& rows = block.island.rows;
+        rows.insert(rows.begin() + 1, rows.front());
+        block.island.patches.front().normals = 2;
+        for (DirectRow& row : rows) row.inverseGamma = 1e7;
+        rows[1].c = 2 * kFall * load / rows[0].inverseGamma * (1 - 1e-5);
+        ASSERT_EQ(block.island.Solve().outcome, Outcome::Solved);
+        ASSERT_GT(rows[1].impulse, 0);
+        ASSERT_LT(rows[1].impulse, 1e-5 * rows[0].impulse);
+        for (DirectRow& row : rows) row.impulse = double{static_cast<float>(row.impulse)};
+        block.island.factor.isValid = false;
+        const DirectResult result = block.island.SolveAgain();
+        EXPECT_EQ(result.outcome, Outcome::Solved);
+        EXPECT_EQ(result.factorizations, 1u) << i;
+    }
+}
+
 TEST(DirectSolver, BlockSlidesOutsideOfTheCone) {
     for (const double friction : {0.01, 0.3, std::tan(0.5) * 0.999}) {
         Block block(0.5, friction);
