@@ -266,7 +266,7 @@ void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& color
 void BuildIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                   std::span<const uint32_t> began, PairStore& pairs, JointStore& joints, SolverLayout& layout,
                   SavedEfforts& saved, ScratchArena& scratch) {
-    NoteWeights(step, began, bodies, joints, pairs);
+    NoteWeights(step, began, bodies, joints, pairs, scratch);
     if (step.Lengthens()) NoteForces(step, coloring, bodies, joints, pairs);
     const auto stiffen = [](auto& groups) {
         for (auto& group : groups)

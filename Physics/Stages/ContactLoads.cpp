@@ -144,24 +144,88 @@ bool IsLeftOut(const BodyStore& bodies, const JointStore& joints, const Pair& pa
     return isLeftOut(pair.bodyA) || isLeftOut(pair.bodyB);
 }
 
+// A contact that began, by its pair.
+struct BegunContact {
+    uint32_t upper, lower;
+    float down;  // m/s2: gravity along the normal
+};
+BegunContact ContactOf(const Vector3& gravity, const BodyStore& bodies, const PairStore& pairs, uint32_t index) {
+    const Pair& pair = pairs.pairs[index];
+    const float* n = pairs.RecordOf(pair).normal;
+    const float down = Dot(Rotate(bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2])), gravity);
+    return down < 0 ? BegunContact{pair.bodyB, pair.bodyA, -down} : BegunContact{pair.bodyA, pair.bodyB, down};
+}
+
+// What the contacts that began carry, in a structure that begins at rest: the upper body and what that carries, by
+// equal parts on all that it lies on. What falls together carries nothing.
+class Carried {
+public:
+    Carried(const StepContext& step, const BodyStore& bodies, const PairStore& pairs, std::span<const uint32_t> began,
+            ScratchArena& scratch)
+        : bodies_(bodies), calm_(Length(step.settings.gravity) * step.dt), order_(began) {
+        const Vector3 g = step.settings.gravity;
+        const auto contactOf = [&](uint32_t index) { return ContactOf(g, bodies, pairs, index); };
+        const auto isOnBody = [&](uint32_t index) { return bodies.dynamics[contactOf(index).lower].inverseMass > 0; };
+        if (began.size() < 2 || std::ranges::none_of(began, isOnBody)) return;
+        // From top to bottom.
+        struct Place {
+            double depth;
+            uint32_t pair;
+            auto operator<=>(const Place&) const = default;
+        };
+        std::span<Place> places = scratch.Allocate<Place>(began.size());
+        std::span<uint32_t> order = scratch.Allocate<uint32_t>(began.size());
+        loads_ = scratch.Allocate<Load>(bodies.dynamics.size());
+        std::ranges::fill(loads_, Load{});
+        for (size_t i = 0; i < began.size(); ++i) {
+            const uint32_t upper = contactOf(began[i]).upper;
+            const Position at = bodies.CenterOf(upper);
+            places[i] = {at.x() * double{g.x()} + at.y() * double{g.y()} + at.z() * double{g.z()}, began[i]};
+            ++loads_[upper].supports;
+        }
+        std::ranges::sort(places);
+        std::ranges::transform(places, order.begin(), &Place::pair);
+        order_ = order;
+    }
+
+    // In which MassOn is to be called.
+    std::span<const uint32_t> Order() const { return order_; }
+    float MassOn(const BegunContact& contact) {
+        if (loads_.empty() || Length(bodies_.LinearVelocityOf(contact.upper)) > calm_) return 0;
+        const Load& above = loads_[contact.upper];
+        const float mass =
+            (1 / bodies_.dynamics[contact.upper].inverseMass + above.mass) / static_cast<float>(above.supports);
+        loads_[contact.lower].mass += mass;
+        return mass;
+    }
+
+private:
+    struct Load {
+        float mass;  // kg
+        uint32_t supports;
+    };
+    const BodyStore& bodies_;
+    float calm_;  // m/s
+    std::span<const uint32_t> order_;
+    std::span<Load> loads_;  // by body; empty: nothing lies on what lies on something
+};
+
 }  // namespace
 
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
-                 const JointStore& joints, PairStore& pairs) {
+                 const JointStore& joints, PairStore& pairs, ScratchArena& scratch) {
     if (!AdaptsToLoads(step.settings, bodies)) return;
     const float softness = LoadSoftnessOf(step);
-    for (uint32_t index : began) {
-        const Pair& pair = pairs.pairs[index];
-        if (IsLeftOut(bodies, joints, pair)) continue;
-        const BodyDynamics &a = bodies.dynamics[pair.bodyA], &b = bodies.dynamics[pair.bodyB];
-        const float* n = pairs.RecordOf(pair).normal;
-        const float down = Dot(Rotate(bodies.RotationOf(pair.bodyA), Vector3(n[0], n[1], n[2])), step.settings.gravity);
-        const BodyDynamics &upper = down < 0 ? b : a, &lower = down < 0 ? a : b;
-        if (!(upper.inverseMass > 0)) continue;
+    Carried carried(step, bodies, pairs, began, scratch);
+    for (uint32_t index : carried.Order()) {
+        const BegunContact contact = ContactOf(step.settings.gravity, bodies, pairs, index);
+        const BodyDynamics &upper = bodies.dynamics[contact.upper], &lower = bodies.dynamics[contact.lower];
+        if (!(upper.inverseMass > 0) || IsLeftOut(bodies, joints, pairs.pairs[index])) continue;
         const BodyDynamics& lighter = lower.inverseMass > upper.inverseMass ? lower : upper;
-        const float sink = kMargin * std::fabs(down) * lighter.inverseMass / upper.inverseMass * softness;
-        const float part = sink / SizeOf(lighter);
-        const float target = PenetrationTargetOf(bodies, pair.bodyA, pair.bodyB, step.settings.accuracy.penetration);
+        const float mass = std::max(kMargin / upper.inverseMass, carried.MassOn(contact));
+        const float part = contact.down * lighter.inverseMass * mass * softness / SizeOf(lighter);
+        const float target =
+            PenetrationTargetOf(bodies, contact.upper, contact.lower, step.settings.accuracy.penetration);
         const float springs = IsLoad(upper, lower, target, step) ? kLoadedSubstep * kLoadedSubstep : 1;
         if (!(springs * part > target)) continue;
         const uint32_t level = LevelOf(part / LargestUnnoted(target));

@@ -112,10 +112,11 @@ inline bool IsLoad(const BodyDynamics& heavier, const BodyDynamics& lighter, flo
            kCalm * Length(step.settings.gravity) * step.softness <= target * SizeOf(lighter);
 }
 
-// Initializes the levels of new contacts from the weights of the bodies that they carry: their impulses take many steps
-// to build up, the more the lighter the lower body is. began: pairs. Called by BuildIslands.
+// Initializes the levels of new contacts from the weights that they carry, in a structure that begins at rest those of
+// all bodies above: their impulses take many steps to build up, the more the lighter the lower body is. began: pairs.
+// Called by BuildIslands.
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
-                 const JointStore& joints, PairStore& pairs);
+                 const JointStore& joints, PairStore& pairs, ScratchArena& scratch);
 
 // Raises the levels of all contacts to what their forces of the last step require in a longer one: it would begin with
 // springs that are too soft, and stacks would fall by several sinks. Called by BuildIslands.

@@ -59,6 +59,32 @@ TEST(LoadedIslands, WhatRestsDoesNotMove) {
     EXPECT_GT(world.Bodies().GetLinearVelocity(column.back()).x(), hit - 0.5 * kGravity / 30);
 }
 
+// A structure that begins at rest is loaded in its first step: twenty books neither slide nor sink while impulses build
+// up.
+TEST(LoadedIslands, AStructureIsLoadedFromTheStart) {
+    for (const int substeps : {1, 4, 16}) {
+        SystemSettings settings = NoSleep();
+        settings.solver.substeps = substeps;
+        TestWorld world(settings);
+        world.AddFloor();
+        std::vector<BodyId> books;
+        for (int i = 0; i < 20; ++i)
+            books.push_back(world.Add({.shape = BoxOf(0.1f, 0.015f, 0.15f),
+                                       .position = {0.003 * (i * 7 % 5 - 2), 0.015 + 0.03 * i, 0.002 * (i % 3)},
+                                       .mass = 0.8f}));
+        std::vector<Position> before;
+        for (const BodyId id : books) before.push_back(world.PositionOf(id));
+        world.Step();
+        EXPECT_TRUE(IsSolvedDirectly(world)) << substeps;
+        for (int step = 0; step < 60; ++step) {
+            world.Step();
+            for (size_t i = 0; i < books.size(); ++i)
+                for (int k = 0; k < 3; ++k)
+                    EXPECT_NEAR(world.PositionOf(books[i])[k], before[i][k], 1e-5) << substeps << " book " << i;
+        }
+    }
+}
+
 // A light plank on two piers, with a load of 200 times its mass at a quarter of the span: the piers carry 3/4 and 1/4
 // of the load, and a half of the plank each.
 TEST(LoadedIslands, ABeamSharesItsLoadByTheLever) {
