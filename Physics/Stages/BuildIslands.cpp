@@ -161,7 +161,8 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     sort(Kind::Fixed, fixed, layout.fixed);
 }
 
-// What rests stays where it is with substeps of any length, if it is solved directly.
+// What rests stays where it is with substeps of any length, if it is solved directly. Not where that has taken long
+// lately: were it to fail, iterations would have one long substep.
 void NoteResting(const StepContext& step, const BodyStore& bodies, SolverLayout& layout) {
     const float most = kResting * Length(step.settings.gravity) * step.dt;
     for (SolverGroup& group : layout.groups) {
@@ -169,9 +170,9 @@ void NoteResting(const StepContext& step, const BodyStore& bodies, SolverLayout&
         group.isResting = std::ranges::all_of(
             std::span(layout.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),
             [&](uint32_t body) {
-                return Length(bodies.LinearVelocityOf(body)) +
-                           Length(bodies.AngularVelocityOf(body)) * SizeOf(bodies.dynamics[body]) <
-                       most;
+                const float speed = Length(bodies.LinearVelocityOf(body)) +
+                                    Length(bodies.AngularVelocityOf(body)) * SizeOf(bodies.dynamics[body]);
+                return speed < most && bodies.cold[body].directMisses == 0;
             });
     }
 }
