@@ -46,12 +46,10 @@ inline float SoftnessOf(const SystemSettings& settings, float substepDt) {
     return 1.0f / (w * w);
 }
 // The same, by which loads are judged: that of substeps of 1/240 s at least. What needs a direct solution there gets it
-// with shorter substeps, too: they are not to be less exact. Not those below a millisecond, in which floats of
-// velocities and impulses resolve too little of a substep's motion.
+// with shorter substeps, too: they are not to be less exact.
 inline float LoadSoftnessOf(const StepContext& step) {
-    constexpr float kUsual = 1.0f / 240, kShortest = 1.0f / 1000;
-    const bool isJudged = step.stiffnessDt < kUsual && step.stiffnessDt > kShortest;
-    return isJudged ? SoftnessOf(step.settings, kUsual) : step.softness;
+    constexpr float kUsual = 1.0f / 240;
+    return step.stiffnessDt < kUsual ? SoftnessOf(step.settings, kUsual) : step.softness;
 }
 
 // Levels of joint errors assume that the gap is proportional to the square of the substep; if it is not, the efforts

@@ -81,11 +81,19 @@ inline float SpringsOf(const SolverGroup& group, float impulseScale) {
     return group.stiffness > 0 ? std::max(impulseScale, SubstepOfStiffness(group.stiffness)) : impulseScale;
 }
 
+// Of an island under load that is solved directly. In substeps below a millisecond floats of velocities and impulses
+// resolve too little of its motion: a column that leaned by 97 % of what it stands fell with 128.
+inline int DirectSubsteps(int substeps, float dt, bool isResting) {
+    constexpr float kShortest = 1.0f / 1000;
+    return isResting ? 1 : std::clamp(static_cast<int>(dt / kShortest), 1, substeps);
+}
+
 inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     const SystemSettings& s = step.settings;
     Effort effort;
     effort.solver = s.solver;
-    effort.solver.substeps = group.isResting ? 1 : std::max<int>(s.solver.substeps, group.effort.substeps);
+    effort.solver.substeps = std::max<int>(s.solver.substeps, group.effort.substeps);
+    if (group.isLoaded) effort.solver.substeps = DirectSubsteps(effort.solver.substeps, step.dt, group.isResting);
     effort.solver.velocityIterations = std::max<int>(s.solver.velocityIterations, group.effort.velocityIterations);
     effort.solver.positionIterations = std::max<int>(s.solver.positionIterations, group.effort.positionIterations);
     const float h = effort.substepDt = step.dt / static_cast<float>(effort.solver.substeps);

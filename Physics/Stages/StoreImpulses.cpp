@@ -135,9 +135,9 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
                            notesGaps ? &usualGap : nullptr};
     for (const SolverGroup& group : layout.groups) {
         const bool isFirst = &group == &layout.groups.front();
-        if (!group.isLarge && !group.effort.IsAny() && !group.isResting) continue;
+        if (!group.isLarge && !group.effort.IsAny() && !group.isLoaded) continue;
         const float impulseScale = EffortOf(step, group).impulseScale;
-        const float springs = group.isResting ? 1 : SpringsOf(group, impulseScale);
+        const float springs = group.isLoaded ? 1 : SpringsOf(group, impulseScale);
         const SinkScale sink = sinkScaleOf(impulseScale, springs, group.stiffness);
         const GapScale gap = gapScaleOf(impulseScale, group.stiffness);
         const bool isNoted = notesLarge || !group.isLarge;
