@@ -282,6 +282,31 @@ Vec3<Real> WithinARadian(const Vec3<Real>& w, float dt) {
     return w * Select(squared <= most * most, one, most / Sqrt(Max(squared, Real(1e-30f))));
 }
 
+// m/s2, by which the velocity of a surface that turns changes where the contact is. That goes along the surface with
+// the first body, and turns with it about the normal, unless it hits the surface: a ball that rolls on a disc meets
+// other points of it all the time. turning: velocity of the surface there, less the linear one.
+template <int N>
+Vec3<Wide<N>> SurfaceAcceleration(const ContactBatch<N, true>& batch, const ConstSolverBodies& bodies,
+                                  const Vec3<Wide<N>>& turning, float dt) {
+    using Real = Wide<N>;
+    const Real zero(0.0f);
+    const Vec3<Real> none(zero, zero, zero);
+    const auto& [linear, angular] = batch.sideB.velocity;
+    if (!(Dot<Real>(angular, angular) > zero).Any()) return none;
+    const float* rows[N];
+    for (int i = 0; i < N; ++i) rows[i] = bodies.states[batch.bodyA[i]].VelocityRow();
+    Real velocity[8];
+    GatherRows<N>(rows, velocity);
+    const Vec3<Real>& n = batch.normal;
+    const Vec3<Real> slip =
+        Linear(velocity) + Cross<Real>(Vec3<Real>(n * Dot<Real>(n, Angular(velocity))), batch.armA) - linear;
+    const Real onto = Dot<Real>(n, slip);
+    const Vec3<Real> along = slip - n * onto;
+    const auto goes = onto * onto <= Dot<Real>(along, along);
+    return Cross<Real>(WithinARadian<Real>(angular, dt), Vec3<Real>(turning + ZeroUnless<Real>(goes, along))) +
+           none;  // not -0
+}
+
 // Adds the surface velocities to the velocities of static and kinematic sides. Lanes without one stay bit-identical, so
 // the result does not depend on the other lanes of the batch.
 template <int N>
@@ -388,7 +413,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.sideB.velocity.angular = Angular(velocity);
         const Vec3<Real> turning = Cross<Real>(Angular(velocity), armB);
         batch.sideB.velocity.linear = Linear(velocity) + turning;
-        batch.sideB.acceleration = Cross<Real>(WithinARadian<Real>(Angular(velocity), settings.dt), turning);
+        batch.sideB.acceleration = SurfaceAcceleration(batch, bodies, turning, settings.dt);
     } else {
         batch.sideB.arm = armB;
         responses.Add(batch.sideB.inverse, armB, n, t1, t2);

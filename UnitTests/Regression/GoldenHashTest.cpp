@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x831c431d82d47248ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x640f96146373d975ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x1cd6dd817440384bull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x7c68d35696aae732ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x7314e7ef10c8c8afull;
+constexpr uint64_t kGoldenHash = 0x58ca830499bca693ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x1a8c1b43b28f527aull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x208b53f4ddfee9aaull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0x7edd3c5a2b0d5483ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0xa132d8dca41b81f6ull;
 
 std::string Hex(uint64_t number) {
     char text[24];
