@@ -18,7 +18,8 @@ struct IslandEffortReport {
     // body of a joint that asks for more effort, or of a load.
     BodyId culprit;
     uint32_t bodies = 0;  // dynamic ones in it
-    // Its contacts are solved directly, because of a load: in the settings' substeps, or, at rest, in one.
+    // Its contacts are solved directly, because of a load: in the settings' substeps, in none shorter than a
+    // millisecond, and, at rest, in one.
     bool isDirect = false;
 };
 

@@ -293,13 +293,11 @@ Vec3<Wide<N>> SurfaceAcceleration(const ContactBatch<N, true>& batch, const Cons
     const Vec3<Real> none(zero, zero, zero);
     const auto& [linear, angular] = batch.sideB.velocity;
     if (!(Dot<Real>(angular, angular) > zero).Any()) return none;
-    const float* rows[N];
-    for (int i = 0; i < N; ++i) rows[i] = bodies.states[batch.bodyA[i]].VelocityRow();
-    Real velocity[8];
-    GatherRows<N>(rows, velocity);
+    Twists<N, true> twists;
+    GatherVelocities(batch, bodies.states, twists);
     const Vec3<Real>& n = batch.normal;
     const Vec3<Real> slip =
-        Linear(velocity) + Cross<Real>(Vec3<Real>(n * Dot<Real>(n, Angular(velocity))), batch.armA) - linear;
+        Linear(twists.a) + Cross<Real>(Vec3<Real>(n * Dot<Real>(n, Angular(twists.a))), batch.armA) - linear;
     const Real onto = Dot<Real>(n, slip);
     const Vec3<Real> along = slip - n * onto;
     const auto goes = onto * onto <= Dot<Real>(along, along);

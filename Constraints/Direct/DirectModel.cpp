@@ -8,8 +8,6 @@ namespace fulcrum {
 namespace {
 
 constexpr double kUnlimited = DirectRow::kUnlimited;
-// Friction within this part of its limit held.
-constexpr double kHolding = 0.999;
 
 // L L^T of a positive semidefinite matrix (xx, yy, zz, xy, xz, yz), by rows. Pivots within the rounding of a matrix of
 // floats are 0.
@@ -174,11 +172,12 @@ DirectModel::DirectModel(const DirectProblem& problem, const DirectPattern& patt
             if (r == tangent || r == tangent + 1) row.d = 0;
         }
         SetLimit(patch, sum > 0 ? from.friction * sum : kUnlimited);
-        const double x = rows_[tangent].last, y = rows_[tangent + 1].last, holding = kHolding * patch.limit;
+        const double x = rows_[tangent].last, y = rows_[tangent + 1].last,
+                     holding = DirectPatch::kHolding * patch.limit;
         patch.wasSliding = !(x * x + y * y <= holding * holding);
     }
     for (Row& row : rows_) {
-        const double rest = row.hi < kUnlimited && row.lo > -kUnlimited ? (1 - kHolding) * row.hi : 0.0;
+        const double rest = row.hi < kUnlimited && row.lo > -kUnlimited ? (1 - DirectPatch::kHolding) * row.hi : 0.0;
         row.wasLimited = !(row.last > row.lo + rest && row.last < row.hi - rest);
     }
 }

@@ -41,6 +41,8 @@ struct DirectRow {
 // the three rows are not read. With l its last impulse c of each of them is less by gamma l, so that what holds with l
 // does not creep. N begins with the sum of the last impulses; where that is 0, friction is unlimited until N is known.
 struct DirectPatch {
+    static constexpr double kHolding = 0.999;  // friction within this part of its limit holds
+
     uint32_t firstNormal, normals;
     double friction;     // > 0
     double twistRadius;  // m

@@ -167,13 +167,11 @@ void NoteResting(const StepContext& step, const BodyStore& bodies, SolverLayout&
     const float most = kResting * Length(step.settings.gravity) * step.dt;
     for (SolverGroup& group : layout.groups) {
         if (!group.isLoaded) continue;
-        group.isResting = std::ranges::all_of(
-            std::span(layout.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),
-            [&](uint32_t body) {
-                const float speed = Length(bodies.LinearVelocityOf(body)) +
-                                    Length(bodies.AngularVelocityOf(body)) * SizeOf(bodies.dynamics[body]);
-                return speed < most && bodies.cold[body].directMisses == 0;
-            });
+        group.isResting = std::ranges::all_of(layout.BodiesOf(group), [&](uint32_t body) {
+            const float speed = Length(bodies.LinearVelocityOf(body)) +
+                                Length(bodies.AngularVelocityOf(body)) * SizeOf(bodies.dynamics[body]);
+            return speed < most && bodies.cold[body].directMisses == 0;
+        });
     }
 }
 

@@ -163,10 +163,13 @@ public:
     Carried(const StepContext& step, const BodyStore& bodies, const PairStore& pairs, std::span<const uint32_t> began,
             ScratchArena& scratch)
         : bodies_(bodies), calm_(Length(step.settings.gravity) * step.dt), order_(began) {
+        // Where nothing lies on what lies on something, as in most steps, bodies carry themselves alone.
+        const auto isOfTwo = [&](uint32_t index) {
+            const Pair& pair = pairs.pairs[index];
+            return bodies.dynamics[pair.bodyA].inverseMass > 0 && bodies.dynamics[pair.bodyB].inverseMass > 0;
+        };
+        if (began.size() < 2 || std::ranges::none_of(began, isOfTwo)) return;
         const Vector3 g = step.settings.gravity;
-        const auto contactOf = [&](uint32_t index) { return ContactOf(g, bodies, pairs, index); };
-        const auto isOnBody = [&](uint32_t index) { return bodies.dynamics[contactOf(index).lower].inverseMass > 0; };
-        if (began.size() < 2 || std::ranges::none_of(began, isOnBody)) return;
         // From top to bottom.
         struct Place {
             double depth;
@@ -178,7 +181,7 @@ public:
         loads_ = scratch.Allocate<Load>(bodies.dynamics.size());
         std::ranges::fill(loads_, Load{});
         for (size_t i = 0; i < began.size(); ++i) {
-            const uint32_t upper = contactOf(began[i]).upper;
+            const uint32_t upper = ContactOf(g, bodies, pairs, began[i]).upper;
             const Position at = bodies.CenterOf(upper);
             places[i] = {at.x() * double{g.x()} + at.y() * double{g.y()} + at.z() * double{g.z()}, began[i]};
             ++loads_[upper].supports;

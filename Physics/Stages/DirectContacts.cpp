@@ -19,8 +19,6 @@ constexpr double kPointSoftness = 1e-3, kMostStiffer = 16384;
 constexpr double kMostBeyond = 2;
 // Of a body's size, what a contact gives way in a substep: at rest it sinks by that over `baumgarte`.
 constexpr double kMostSink = 2e-4;
-// Friction within this part of its limit holds.
-constexpr double kHolds = 1e-3;
 
 // m: by how much separations are off, because of their floats and of the grid of positions.
 double RoundingOf(double size) { return kRounding * size + kPositionGrid; }
@@ -216,7 +214,7 @@ bool DirectContacts::AddCorrections(std::span<const DirectRow> rows, const Conta
             });
             if (!contact->hasFriction) continue;
             const DirectPatch& limits = patches_[patch++];
-            const double limit = (1 - kHolds) * limits.friction * sum, x = rows[next].impulse,
+            const double limit = DirectPatch::kHolding * limits.friction * sum, x = rows[next].impulse,
                          y = rows[next + 1].impulse;
             if (x * x + y * y < limit * limit) {
                 add(rows[next]);

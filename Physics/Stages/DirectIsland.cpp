@@ -394,14 +394,13 @@ bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
 
 bool DirectIsland::MaySolveContacts(const PairStore& pairs) const {
     const auto mayBe = [&](uint32_t body) { return MayBeSolvedDirectly(bodies_, body); };
-    return contacts_.MayBeSolvedDirectly(pairs) &&
-           std::ranges::all_of(std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size()), mayBe);
+    return contacts_.MayBeSolvedDirectly(pairs) && std::ranges::all_of(layout_.BodiesOf(group_), mayBe);
 }
 
 bool DirectIsland::NoteMisses() {
     const uint32_t times = factorizations_ / (kMostFactorizations * std::max(solutions_, kLeastSubsteps));
     bool areMany = false;
-    for (const uint32_t body : std::span(layout_.bodies).subspan(group_.bodiesBegin, island_.size())) {
+    for (const uint32_t body : layout_.BodiesOf(group_)) {
         BodyCold& cold = bodies_.cold[body];
         uint8_t& misses = cold.directMisses;
         if (times > 0) misses = static_cast<uint8_t>(std::min<uint32_t>(misses + times, kMostMisses));

@@ -23,8 +23,8 @@ struct Islands {
     static constexpr uint32_t kLargeGroup = 0;  // see SolverGroup
 };
 
-// Finds islands and fills groups, without bodies and colors, efforts, and patternWords of the layout. Uses scratch
-// memory of the step. saved: restored efforts, or null.
+// Finds islands, and fills the layout's groups, without their bodies and colors, its efforts, and the patterns of
+// islands that are solved directly. Uses scratch memory of the step. saved: restored efforts, or null.
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                     const JointStore& joints, const PairStore& pairs, const Array<SavedEffort>* saved,
                     SolverLayout& layout, ScratchArena& scratch);

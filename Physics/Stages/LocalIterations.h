@@ -74,9 +74,7 @@ private:
     void IterateMarked(Iterate&& iterate);
     void MarkContactsOf(uint32_t body);
     bool IsJointed(uint32_t a, uint32_t b) const { return joints_.HasAny(a) || joints_.HasAny(b); }
-    std::span<const uint32_t> Bodies() const {
-        return std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
-    }
+    std::span<const uint32_t> Bodies() const { return layout_.BodiesOf(group_); }
     std::span<const uint32_t> ContactsOf(uint32_t body) const;
     uint32_t JoinClusters(UnionFind& clusters, uint32_t a, uint32_t b);
 

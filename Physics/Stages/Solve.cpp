@@ -145,9 +145,7 @@ public:
         uint8_t substep = 0;
         for (const Verb verb : verbs) {
             if (IsOverBodies(verb)) {
-                RunBodies(verb, substep,
-                          std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin),
-                          findings);
+                RunBodies(verb, substep, layout_.BodiesOf(group_), findings);
                 continue;
             }
             if (verb == Verb::NextSubstep) {
@@ -264,10 +262,8 @@ private:
 
     // Adds the warm start to the velocities, scaled by island.
     void ApplyWarmStart() {
-        const std::span<const uint32_t> bodies =
-            std::span(layout_.bodies).subspan(group_.bodiesBegin, group_.bodiesEnd - group_.bodiesBegin);
         const uint32_t* islandOf = layout_.islandOf.data() + group_.bodiesBegin;
-        scales_ = ScaleWarmStarts(bodies_, bodies, islandOf, starts_, islands_);
+        scales_ = ScaleWarmStarts(bodies_, layout_.BodiesOf(group_), islandOf, starts_, islands_);
     }
 
     Reads ReadsOf(Verb verb) const {
@@ -605,8 +601,7 @@ void Solve(const StepContext& step, const ColliderStore& colliders, PairStore& p
              });
     if (pushes.empty()) return;
     for (const SolverGroup& group : layout.groups)
-        NotePushes(bodies, std::span(layout.bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin),
-                   EffortOf(step, group).substepDt, pushes);
+        NotePushes(bodies, layout.BodiesOf(group), EffortOf(step, group).substepDt, pushes);
 }
 
 }  // namespace fulcrum

@@ -111,6 +111,9 @@ struct SolverLayout {
 
     bool HasJoints() const { return balls.count + joints.count > 0 || !overflowJoints.empty(); }
     size_t OverflowCount() const;  // number of constraints without a color
+    std::span<const uint32_t> BodiesOf(const SolverGroup& group) const {
+        return std::span(bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin);
+    }
     // Of a group that is solved directly: of its bodies in their order.
     DirectPattern PatternOf(const SolverGroup& group) const {
         const uint32_t count = group.bodiesEnd - group.bodiesBegin;
