@@ -309,10 +309,10 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     }
     SolverGroup& first = groups[Islands::kLargeGroup];
     const auto ofAll = [&](uint32_t culprit) {
-        layout.efforts.push_back(
-            {.culprit = culprit,
-             .bodies = static_cast<uint32_t>(std::ranges::count(result.groupOf, Islands::kLargeGroup)),
-             .group = Islands::kLargeGroup});
+        layout.efforts.push_back({.culprit = culprit,
+                                  .bodies = static_cast<uint32_t>(
+                                      std::count(result.groupOf.begin(), result.groupOf.end(), Islands::kLargeGroup)),
+                                  .group = Islands::kLargeGroup});
     };
     if (overflowing.least.IsAny()) {
         SetEffort(first, overflowing, usual);
