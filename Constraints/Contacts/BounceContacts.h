@@ -2,7 +2,7 @@
 // propagate: a body that is hit passes the impact on to the bodies it touches in the same iteration, those pass it on
 // in the next.
 //
-// Newton's law of restitution at each point, v+ = -e v-, for all points of a contact that hit in the substep together;
+// Newton's law of restitution at each point, v+ = -e v-, for all points of a contact that hit together;
 // Coulomb friction with a tangential restitution of 0. The impulses are scaled down where they would add energy, which
 // Newton's law may do with several points or with friction (W. J. Stronge, Impact Mechanics, 2000).
 //
@@ -25,7 +25,7 @@
 
 namespace fulcrum::contacts {
 
-// The contact points that collide within a substep.
+// The contact points that collide together, within a substep after the first of them.
 template <class Real>
 struct Hits {
     static constexpr int kPoints = ContactRecord::kMaxPoints;
@@ -44,18 +44,25 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
     Hits<Real> hits;
     hits.time = h;
     Real approach[Hits<Real>::kPoints], gap[Hits<Real>::kPoints];
-    WideMask<N> isHit[Hits<Real>::kPoints];
+    WideMask<N> mayBeHit[Hits<Real>::kPoints];
+    auto isAnyHit = zero > zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto& row = batch.rows[i];
         approach[i] = Max(Min(-MotionOf(row, free), -MotionOf(row, velocity)), zero);
         const Real start = kRelax ? row.separation + approach[i] * h : row.separation;  // at the start of the substep
         gap[i] = Max(start, zero);
         const auto isImpact = ImpactSpeed(bounciness, approach[i], gap[i], h) > SlowestImpact(bounciness, settings);
-        isHit[i] =
-            isImpact & (bounciness.restitution > zero) & (start <= approach[i] * h) & (row.inverseResponse > zero);
+        mayBeHit[i] = isImpact & (bounciness.restitution > zero) & (row.inverseResponse > zero);
+        const auto isHit = mayBeHit[i] & (start <= approach[i] * h);
+        isAnyHit = isAnyHit | isHit;
         const Real time = Min(gap[i] / Max(approach[i], Real(1e-30f)), h);
-        hits.time = Select(isHit[i], Min(hits.time, time), hits.time);
+        hits.time = Select(isHit, Min(hits.time, time), hits.time);
     }
+    // With the first one those are hit that would be within the duration of a substep after it: whether points are hit
+    // together does not depend on when the substep ends.
+    WideMask<N> isHit[Hits<Real>::kPoints];
+    for (int i = 0; i < batch.pointCount; ++i)
+        isHit[i] = isAnyHit & mayBeHit[i] & (gap[i] <= approach[i] * (hits.time + h));
     // All points are hit at that time. Free flight is integrated exactly, including a h^2 / 2 (Integrate.cpp).
     const Real fall = closing * (h - hits.time), lift = closing * h;
     for (int i = 0; i < batch.pointCount; ++i) {

@@ -6,6 +6,11 @@
 
 namespace fulcrum::contacts {
 
+template <class Real>
+FULCRUM_FORCE_INLINE Real InverseOrZero(const Real& x) {
+    return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
+}
+
 // Fraction of the smaller inner radius up to which overlaps have the full softness (inverseSoftDepth).
 inline constexpr float kSoftFraction = 0.25f;
 

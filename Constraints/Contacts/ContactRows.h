@@ -118,6 +118,58 @@ FULCRUM_FORCE_INLINE WideMask<N> MovesByItself(const ContactBatch<N, kFixedB>& b
         return Dot<Real>(velocity.linear, velocity.linear) + Dot<Real>(velocity.angular, velocity.angular) > Real(0.0f);
     }
 }
+// What falls flat would turn by the order of its rows. So the points of a manifold are first solved together where the
+// rows would change much, by more than half of their impulses and than a step of gravity: of a hit, in which all of
+// them approach, equal impulses stop the mean approach; where they part, the impulses of the warm start are scaled
+// back, such that their work is least. speed: as below. changes: of the impulses.
+template <Pass kPass, int N, bool kFixedB>
+[[gnu::noinline]] void SolveTogether(ContactBatch<N, kFixedB>& batch, const ContactSolveSettings& settings,
+                                     Wide<N>* speed, NormalImpulses<Wide<N>>& changes) {
+    using Real = Wide<N>;
+    const Real zero(0.0f), one(1.0f);
+    Real parting = zero, count = zero, change = zero, sum = zero;
+    auto isMuch = batch.rows[1].inverseResponse > zero, overlaps = zero > zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        const auto isUsed = row.inverseResponse > zero;
+        isMuch = isMuch & ((speed[i] < zero) | (row.impulse > zero) | ~isUsed);
+        if constexpr (kPass != Pass::Relax) overlaps = overlaps | (isUsed & (row.separation < zero));
+        parting += Select(isUsed, speed[i], zero);
+        count += Select(isUsed, one, zero);
+        change += row.inverseResponse * speed[i];
+        sum += row.impulse;
+    }
+    const auto hits = parting < zero;
+    isMuch = isMuch & (Real(2.0f) * Abs(change) > sum) & (Abs(parting) > count * Real(settings.leastError)) &
+             ~(hits & overlaps);      // the recovery of overlaps is no hit
+    if (batch.isGuided) [[unlikely]]  // their rows are under-relaxed
+        isMuch = isMuch & LanesWhere<N>([&](int i) { return batch.locks[i] == 0; });
+    if (!isMuch.Any()) return;
+    // Along these impulses, with least energy.
+    Real along[ContactRecord::kMaxPoints], response[ContactRecord::kMaxPoints];
+    for (int i = 0; i < batch.pointCount; ++i) {
+        const auto& row = batch.rows[i];
+        along[i] = Select(isMuch & (row.inverseResponse > zero), Select(hits, one, row.impulse), zero);
+        response[i] = along[i] * InverseOrZero(row.inverseResponse);
+        for (int j = 0; j < i; ++j) {
+            response[i] += along[j] * batch.response[PairIndex(j, i)];
+            response[j] += along[i] * batch.response[PairIndex(j, i)];
+        }
+    }
+    Real work = zero, energy = zero;
+    for (int i = 0; i < batch.pointCount; ++i) {
+        work += along[i] * speed[i];
+        energy += along[i] * response[i];
+    }
+    const Real best = -work * InverseOrZero(energy), part = Select(hits, Max(best, zero), Clamp(best, -one, zero));
+    for (int i = 0; i < batch.pointCount; ++i) {
+        auto& row = batch.rows[i];
+        row.impulse += part * along[i];
+        changes.Add(row, part * along[i]);
+        speed[i] += part * response[i];
+    }
+}
+
 // One Gauss-Seidel sweep over the normal rows. total: returns their impulses. speed: m/s along the normal, biases for
 // gaps and recovery included; updated to the remaining error. stiffer: 0..1, reduction of the softness of rows with
 // overlap.
@@ -238,8 +290,14 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         }
         findSpeeds();
     }
-    SweepNormals<kPass>(batch, settings, stiffer, speed, total);
     NormalImpulses<Real> changes;
+    if (batch.pointCount > 1) {
+        Real largest = zero;
+        for (int i = 0; i < batch.pointCount; ++i)
+            largest = Max(largest, Select(batch.rows[i].impulse > zero, Abs(speed[i]), -speed[i]));
+        if ((largest > Real(settings.leastError)).Any()) SolveTogether<kPass>(batch, settings, speed, changes);
+    }
+    SweepNormals<kPass>(batch, settings, stiffer, speed, total);
     [[maybe_unused]] WideMask<N> isUnsolved = zero > zero, isHit = isUnsolved;
     [[maybe_unused]] const Real hitError =
         Max(Real(settings.hitError) / batch.inverseSoftDepth, Real(settings.leastError));

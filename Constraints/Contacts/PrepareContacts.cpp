@@ -45,11 +45,6 @@ struct Responses {
     }
 };
 
-template <class Real>
-Real InverseOrZero(Real x) {
-    return Select(x > Real(0.0f), Real(1.0f) / Max(x, Real(1e-30f)), Real(0.0f));
-}
-
 // Relative to the response without locks: rows with a smaller one are under-relaxed.
 constexpr float kLeastShare = 0.25f;
 
@@ -282,12 +277,12 @@ Vec3<Real> WithinARadian(const Vec3<Real>& w, float dt) {
     return w * Select(squared <= most * most, one, most / Sqrt(Max(squared, Real(1e-30f))));
 }
 
-// m/s2, by which the velocity of a surface that turns changes where the contact is. That goes along the surface with
-// the first body, and turns with it about the normal, unless it hits the surface: a ball that rolls on a disc meets
-// other points of it all the time. turning: velocity of the surface there, less the linear one.
+// m/s2, by which the velocity of a surface that turns, of itself or as its body, changes where the contact is. That
+// goes along the surface with the first body, and turns with it about the normal, unless it hits the surface: a ball
+// that rolls on a disc meets other points of it all the time. center: velocity of the second body's center of mass.
 template <int N>
 Vec3<Wide<N>> SurfaceAcceleration(const ContactBatch<N, true>& batch, const ConstSolverBodies& bodies,
-                                  const Vec3<Wide<N>>& turning, float dt) {
+                                  const Vec3<Wide<N>>& center, float dt) {
     using Real = Wide<N>;
     const Real zero(0.0f);
     const Vec3<Real> none(zero, zero, zero);
@@ -301,26 +296,23 @@ Vec3<Wide<N>> SurfaceAcceleration(const ContactBatch<N, true>& batch, const Cons
     const Real onto = Dot<Real>(n, slip);
     const Vec3<Real> along = slip - n * onto;
     const auto goes = onto * onto <= Dot<Real>(along, along);
-    return Cross<Real>(WithinARadian<Real>(angular, dt), Vec3<Real>(turning + ZeroUnless<Real>(goes, along))) +
+    return Cross<Real>(WithinARadian<Real>(angular, dt), Vec3<Real>(linear - center + ZeroUnless<Real>(goes, along))) +
            none;  // not -0
 }
 
 // Adds the surface velocities to the velocities of static and kinematic sides. Lanes without one stay bit-identical, so
 // the result does not depend on the other lanes of the batch.
 template <int N>
-void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const SurfaceVelocity* surfaces, float dt) {
+void AddSurfaceMotion(ContactBatch<N, true>& batch, const Wide<N>& marks, const SurfaceVelocity* surfaces) {
     using Real = Wide<N>;
     const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, surfaces);
     const Vec3<Real> linear = batch.tangent1 * surface.v1 + batch.tangent2 * surface.v2,
                      angular = batch.normal * surface.spin;
-    // Centripetal acceleration of points that rotate with the surface.
-    const Vec3<Real> inwards = Cross<Real>(WithinARadian<Real>(angular, dt), linear);
     const auto has = HaveSurfaceVelocity(marks);
     auto& side = batch.sideB;
     for (int k = 0; k < 3; ++k) {
         side.velocity.linear[k] = Select(has, side.velocity.linear[k] + linear[k], side.velocity.linear[k]);
         side.velocity.angular[k] = Select(has, side.velocity.angular[k] + angular[k], side.velocity.angular[k]);
-        side.acceleration[k] = Select(has, side.acceleration[k] + inwards[k], side.acceleration[k]);
     }
 }
 
@@ -370,7 +362,7 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     // points that carried load in the last step: neither speculative points ahead nor those of a lifted side count.
     Vec3<Real> points[ContactRecord::kMaxPoints];
     Vec3<Real> center(zero, zero, zero);
-    Real gaps = zero, pressing = zero;
+    Real gap = zero, pressing = zero;
     for (int i = 0; i < batch.pointCount; ++i) {
         const auto used = pointCount > Real(static_cast<float>(i));
         Real& impulse = batch.rows[i].impulse;
@@ -394,10 +386,12 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         batch.rows[i].startSeparation = batch.rows[i].separation = Select(used, separation, zero);
         const Real share = Select(anyPresses, Select(batch.rows[i].impulse > zero, perPressing, zero), perPoint);
         for (int k = 0; k < 3; ++k) center[k] += Select(used, Real(points[i][k] * share), zero);
-        gaps += Select(used, Max(separation, zero), zero);
+        gap += Select(used, Real(Max(separation, zero) * share), zero);
     }
-    // At an impact the gap has closed: the point is on both surfaces.
-    const Vec3<Real> toSurface = n * Select(head[Record::kRestitution] > zero, gaps * perPoint * Real(0.5f), zero);
+    // At an impact the gap has closed: the point is on both surfaces. So it is for a single point, which presses only
+    // once the gap has closed: friction on a ball acts at its radius.
+    const auto closes = (head[Record::kRestitution] > zero) | (pointCount <= Real(1.0f));
+    const Vec3<Real> toSurface = n * Select(closes, gap * Real(0.5f), zero);
     batch.armA = center - toSurface;
 
     Responses<Real> responses;
@@ -409,9 +403,10 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
         Real velocity[8];
         GatherRows<N>(rows, velocity);
         batch.sideB.velocity.angular = Angular(velocity);
-        const Vec3<Real> turning = Cross<Real>(Angular(velocity), armB);
-        batch.sideB.velocity.linear = Linear(velocity) + turning;
-        batch.sideB.acceleration = SurfaceAcceleration(batch, bodies, turning, settings.dt);
+        batch.sideB.velocity.linear = Linear(velocity) + Cross<Real>(Angular(velocity), armB);
+        if (isMarked && settings.surfaceVelocities)
+            AddSurfaceMotion(batch, head[Record::kMarks], settings.surfaceVelocities);
+        batch.sideB.acceleration = SurfaceAcceleration(batch, bodies, Linear(velocity), settings.dt);
     } else {
         batch.sideB.arm = armB;
         responses.Add(batch.sideB.inverse, armB, n, t1, t2);
@@ -459,9 +454,6 @@ uint32_t PrepareContacts(ContactBatch<N, kFixedB>& batch, const ContactRecord* r
     }
     if (batch.isGuided) [[unlikely]]
         RelaxGuidedRows(batch);
-    if constexpr (kFixedB)
-        if (isMarked && settings.surfaceVelocities)
-            AddSurfaceMotion(batch, head[Record::kMarks], settings.surfaceVelocities, settings.dt);
     const auto finite = FiniteLanes(batch, responses, diagonals);
     if (!finite.All()) KeepLanes(batch, finite);
     if (batch.bounces) PrepareBounces(batch, head[Record::kRestitution], bodies, settings);

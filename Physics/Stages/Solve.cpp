@@ -9,6 +9,7 @@
 // the last substep change each body's velocity by the same amount again, which is the difference of its solved and
 // unconstrained velocities. Rows of contacts are constant within a step. Those of joints are not, and iterations leave
 // more of a mechanism unsolved: there the impulses of every substep are applied anew, scaled by island (WarmStart.h).
+// So are those of contacts where substeps are short (Effort::startsAnew).
 // Velocity iterations and relax iterations are the same for joints, whose errors position iterations correct.
 #include <Fulcrum/Jobs/Phases.h>
 #include <Fulcrum/Physics/Stages/DirectIsland.h>
@@ -207,9 +208,9 @@ private:
             if (starts_ && addsAtEnd_) ClearStarts(bodies);
         } else if (verb == Verb::IntegrateVelocities) {
             if (!pushes_.empty() && substep > 0) NotePushes(bodies_, bodies, h_, pushes_);
-            const SubstepStart start = substep == 0 ? SubstepStart::First
-                                       : starts_    ? SubstepStart::Anew
-                                                    : SubstepStart::Carries;
+            const SubstepStart start = substep == 0         ? SubstepStart::First
+                                       : effort_.startsAnew ? SubstepStart::Anew
+                                                            : SubstepStart::Carries;
             IntegrateVelocities(bodies_, moved_.joints, bodies, h_, start, findings);
             if (starts_ && (substep == 0 || !addsAtEnd_)) ClearStarts(bodies);
         } else if (IsGyroscopic(verb)) {
@@ -487,7 +488,7 @@ std::span<const Verb> LoopOf(const Effort& effort, const JointVerbs& joints, boo
             if (joints.gyroscopic) verbs[n++] = Verb::Gyroscopic;
             verbs[n++] = Verb::ApplyWarmStart;
             verbs[n++] = Verb::ScaleImpulses;
-        } else if (substep == 0) {
+        } else if (substep == 0 || effort.startsAnew) {
             verbs[n++] = Verb::WarmStart;
         }
         for (int i = 0; i < settings.velocityIterations; ++i)

@@ -267,7 +267,8 @@ TEST(Restitution, ASpinningBallLeavesWithTheTangentialRestitutionZero) {
         float friction, restitution, spin;
     };
     for (const int substeps : kEfforts)
-        for (const Case& c : {Case{0.5f, 0.5f, 20}, Case{0.5f, 0.5f, -50}, Case{0.1f, 0.8f, 30}, Case{0.9f, 1, -5}}) {
+        for (const Case& c : {Case{0.5f, 0.5f, 20}, Case{0.5f, 0.5f, -50}, Case{0.1f, 0.8f, 30}, Case{0.9f, 1, -5},
+                              Case{0.5f, 0, 20}, Case{0.1f, 0, -50}}) {
             SystemSettings settings = NoGravity();
             settings.solver.substeps = substeps;
             TestWorld world(settings);

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <limits>
 #include <memory_resource>
 
 namespace fulcrum::testing {
@@ -171,7 +172,9 @@ TEST(WorldMemory, AStepInASteadyStateAsksForNothing) {
 TEST(WorldMemory, IsThereWhereTheWorldHasBeenAsFull) {
     const Parts parts;
     CountingMemory memory;
-    auto system = PhysicsSystem::Create({}, nullptr, &memory).Value();
+    SystemSettings settings;
+    settings.accuracy.penetration = std::numeric_limits<float>::infinity();  // how many stacks get effort is chance
+    auto system = PhysicsSystem::Create(settings, nullptr, &memory).Value();
     ASSERT_TRUE(
         system->Bodies().Create({.shape = parts.floor, .motion = MotionType::Static, .position = {0, -0.5, 0}}));
     const auto crates = [&](double x) {

@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0x58ca830499bca693ull;
-constexpr uint64_t kGoldenHashOfJoints = 0x1a8c1b43b28f527aull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x208b53f4ddfee9aaull;
-constexpr uint64_t kGoldenHashOfFastBodies = 0x7edd3c5a2b0d5483ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0xa132d8dca41b81f6ull;
+constexpr uint64_t kGoldenHash = 0x93dd39b56f27aa36ull;
+constexpr uint64_t kGoldenHashOfJoints = 0x473da7684c22a482ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0x7e0a66fc48b1ef04ull;
+constexpr uint64_t kGoldenHashOfFastBodies = 0xc78b91e4bdeb6926ull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x8065b6447689924dull;
 
 std::string Hex(uint64_t number) {
     char text[24];

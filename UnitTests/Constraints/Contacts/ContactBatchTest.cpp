@@ -10,14 +10,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fulcrum::testing {
 namespace {
 
 constexpr ContactPrepareSettings kPrepare{1.0f, 0.5f};
-// Hard rows: nothing is pushed. Friction is solved in each pass.
-constexpr ContactSolveSettings kSolve{
-    .inverseDt = 240.0f, .elapsed = 0, .pushRate = 0, .massScale = 1, .impulseScale = 0, .slop = 0, .relaxes = false};
+// Hard rows: nothing is pushed. Friction is solved in each pass. No hit counts, so that row follows row.
+constexpr ContactSolveSettings kSolve{.inverseDt = 240.0f,
+                                      .elapsed = 0,
+                                      .pushRate = 0,
+                                      .massScale = 1,
+                                      .impulseScale = 0,
+                                      .slop = 0,
+                                      .relaxes = false,
+                                      .leastError = std::numeric_limits<float>::max()};
 
 // One contact, row by row: friction along two tangents and about the normal first, then the points.
 template <BodySide kSideB>
@@ -49,16 +56,18 @@ public:
             row.CalculateProperties<BodySide::Dynamic, kSideB>(mass1, mass2);
             row.SetBias(0.0f);
         };
-        const auto along = [&](const Vector3& point, const Vector3& axis) {
-            return AxisJacobian<float>({point, Vector3(point - between), axis});
+        // A single point rubs where the surfaces will meet.
+        const Vector3 toSurface = normal * (count_ == 1 ? 0.5f * std::max(separation_[0], 0.0f) : 0.0f);
+        const auto along = [&](const Vector3& point, const Vector3& axis, const Vector3& apart = Vector3::Zero()) {
+            return AxisJacobian<float>({Vector3(point - apart), Vector3(point + apart - between), axis});
         };
         for (int i = 0; i < count_; ++i) {
             setUp(point_[i], along(points[i], normal));
             point_[i].SetTotalLambda(record_.impulse[i]);
         }
         const Vector3 friction(record_.frictionImpulse[0], record_.frictionImpulse[1], record_.frictionImpulse[2]);
-        setUp(tangent1_, along(center, t1));
-        setUp(tangent2_, along(center, t2));
+        setUp(tangent1_, along(center, t1, toSurface));
+        setUp(tangent2_, along(center, t2, toSurface));
         setUp(twist_, AngleJacobian(normal));
         tangent1_.SetTotalLambda(Dot<float>(friction, t1));
         tangent2_.SetTotalLambda(Dot<float>(friction, t2));
@@ -193,6 +202,43 @@ TEST(ContactBatch, IsTheSequenceOfItsPartsAgainstAFixedBody) {
     for (uint32_t seed = 1; seed <= 10; ++seed) CompareWithParts<true>(seed);
 }
 
+// A block of 2 kg that falls flat at 3 m/s onto what does not move. Its four points stop it with equal impulses, m v
+// / 4. Where the warm start is four times that, they part at 9 m/s, and the impulses are scaled back.
+TEST(ContactBatch, APassStopsAFlatHitWithoutSpin) {
+    constexpr float kMass = 2, kSpeed = 3;
+    for (const float warm : {0.0f, 4.0f}) {
+        RandomContacts contacts(1, true, 1);
+        contacts.poses[0] = contacts.poses[1] = BodyPose{};
+        contacts.poses[0].position[1] = 1;
+        contacts.poses[0].rotation[3] = contacts.poses[1].rotation[3] = 1;
+        contacts.states[0] = contacts.states[1] = BodyState{};
+        contacts.states[0].linearVelocity[1] = (warm - 1) * kSpeed;
+        contacts.masses[0].inverseMass = 1 / kMass;
+        const float inertia[6] = {1, 2, 3, 0, 0, 0};
+        std::copy_n(inertia, 6, contacts.masses[0].inverseInertia);
+        ContactRecord& record = contacts.records[0];
+        record = ContactRecord{};
+        record.normal[1] = -1;
+        record.pointCount = 4;
+        record.friction = 0.5f;
+        for (int i = 0; i < 4; ++i) {
+            ContactRecord::Point& point = record.points[i];
+            point.onA[0] = point.onB[0] = i % 2 == 0 ? 0.5f : -0.5f;
+            point.onA[2] = point.onB[2] = i / 2 == 0 ? 0.3f : -0.3f;
+            point.onA[1] = -1;
+            record.impulse[i] = warm * kMass * kSpeed / 4;
+        }
+        auto batch = PrepareBatch<1, true>(contacts, 0, kPrepare);
+        ContactSolveSettings settings = kSolve;
+        settings.leastError = 0.16f;
+        SolveContactVelocities(batch, contacts.states.data(), settings);
+        const Twist<float> v = contacts.VelocityOf(0);
+        EXPECT_LT(v.linear.norm(), 1e-6f) << warm;
+        EXPECT_LT(v.angular.norm(), 1e-6f) << warm;
+        for (int i = 0; i < 4; ++i) EXPECT_NEAR(batch.rows[i].impulse[0], kMass * kSpeed / 4, 1e-6f) << warm;
+    }
+}
+
 Eigen::Matrix3d InertiaOf(const InverseMass<float>& mass) {
     Eigen::Matrix3d inverse;
     const auto& i = mass.inertia;
@@ -218,7 +264,7 @@ void Momentum(const RandomContacts& contacts, uint32_t contact, Position& linear
 TEST(ContactBatch, KeepsLinearAndAngularMomentum) {
     RandomContacts contacts(64, false, 5);
     // With restitution, friction acts at the points where the surfaces will meet, not at one common point of the
-    // present poses.
+    // present poses. Likewise with a single point, which lets friction's impulse act at arms apart by the gap.
     for (ContactRecord& record : contacts.records) record.restitution = 0;
     for (uint32_t i = 0; i < 64; ++i) {
         Position linear, angular, linearAfter, angularAfter;
@@ -227,6 +273,16 @@ TEST(ContactBatch, KeepsLinearAndAngularMomentum) {
         WarmStartContacts(batch, contacts.states.data());
         for (int k = 0; k < 4; ++k) SolveContactVelocities(batch, contacts.states.data(), kSolve);
         Momentum(contacts, i, linearAfter, angularAfter);
+        if (batch.pointCount == 1) {
+            const auto component = [](const auto& v, int k) { return double{v[k][0]}; };
+            Position gap, friction;
+            for (int k = 0; k < 3; ++k) {
+                gap[k] = component(batch.normal, k) * std::max(double{batch.rows[0].startSeparation[0]}, 0.0);
+                friction[k] = component(batch.tangent1, k) * double{batch.frictionImpulse[0][0]} +
+                              component(batch.tangent2, k) * double{batch.frictionImpulse[1][0]};
+            }
+            angularAfter -= gap.cross(friction);
+        }
         // Inverse masses and inertias are from 0.1 on: each rounding of a velocity of size 10 is one of 1e-5 of
         // momentum.
         EXPECT_LT((linearAfter - linear).norm(), 3e-4) << i;
