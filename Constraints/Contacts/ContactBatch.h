@@ -39,8 +39,8 @@ template <int N>
 struct FixedSide {
     using Real = Wide<N>;
     Twist<Real> velocity;  // at the start of the step
-    // m/s2, centripetal, w x (w x r): a turntable carries its load along the arc. Limited for bodies that rotate by
-    // more than a radian in the step: no more than the velocity changes within the step.
+    // m/s2, of the velocity where the contact goes (PrepareContacts.cpp): a turntable carries its load along the arc.
+    // Limited for bodies that rotate by more than a radian in the step: no more than the velocity changes within it.
     Vec3<Real> acceleration;
 };
 

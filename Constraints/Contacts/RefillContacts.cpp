@@ -56,9 +56,11 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
         after.bodyB[0] = 1;
         PrepareContacts<1, kFixedB>(after, records, bodies, settings);
         if (after.isGuided) LimitGuidedPushes(after);
+        // At the start of the step, of which a surface velocity is.
         if constexpr (kFixedB) {
             auto& side = after.sideB;
-            side.velocity.linear -= side.acceleration * Real(elapsed);
+            if (record.Has(ContactRecord::kSurfaceVelocity)) side = before.sideB;
+            else side.velocity.linear -= side.acceleration * Real(elapsed);
         }
         // The rows refer to displacements since the start of the step.
         Twists<1, kFixedB> twists;
