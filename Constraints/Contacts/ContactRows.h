@@ -256,7 +256,7 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         }
     };
     findSpeeds();
-    [[maybe_unused]] Real friction[3];
+    [[maybe_unused]] Real friction[3], slip[3];  // slip: m/s along t1 and t2, rad/s about n, before friction
     // If relax iterations follow, only lanes with a moving kinematic body or a surface velocity have friction here: a
     // load on a turntable or belt would otherwise lag one substep behind. Other lanes stay bit-identical.
     [[maybe_unused]] WideMask<N> rides;
@@ -271,17 +271,19 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         SweepNormals<kPass>(batch, settings, stiffer, speed, total);
         Real sum = zero;
         for (int i = 0; i < batch.pointCount; ++i) sum += total[i];
-        Real v1 = Dot<Real>(relative.linear, batch.tangent1), v2 = Dot<Real>(relative.linear, batch.tangent2);
-        Real wn = Dot<Real>(relative.angular, batch.normal);
+        slip[0] = Dot<Real>(relative.linear, batch.tangent1);
+        slip[1] = Dot<Real>(relative.linear, batch.tangent2);
+        slip[2] = Dot<Real>(relative.angular, batch.normal);
         if constexpr (kRare && !kFixedB)
             if (batch.hasSurface) {
                 const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, settings.rare->surfaceVelocities);
-                v1 = MoveBy(v1, surface.v1);
-                v2 = MoveBy(v2, surface.v2);
-                wn = MoveBy(wn, surface.spin);
+                slip[0] = MoveBy(slip[0], surface.v1);
+                slip[1] = MoveBy(slip[1], surface.v2);
+                slip[2] = MoveBy(slip[2], surface.spin);
             }
         Real solved[3];
-        SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, batch.friction * sum, v1, v2, wn, solved, friction);
+        SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, batch.friction * sum, slip[0], slip[1], slip[2], solved,
+                                  friction);
         for (int k = 0; k < 3; ++k) {
             batch.frictionImpulse[k] = where(solved[k], batch.frictionImpulse[k]);
             motion.linear = where(motion.linear + batch.coupling[0][k] * friction[k], motion.linear);
@@ -313,6 +315,26 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
             if constexpr (kFixedB) isHit = isHit | (Abs(change) > row.inverseResponse * hitError);
         }
     }
+    if constexpr (kPass == Pass::PushAndFriction && kFixedB)
+        if (settings.relaxes && rides.Any()) {
+            // Once more after the normals, which change the slip: a load on a turntable would creep inwards.
+            const Real* response = batch.frictionResponse;
+            Real after[3], sum = zero, solved[3], more[3];
+            for (int k = 0; k < 3; ++k)
+                after[k] = slip[k] + friction[k] * InverseOrZero(batch.frictionInverse[k]) +
+                           changes.sum * batch.coupling[0][k] + changes.sumB * batch.coupling[1][k] -
+                           changes.sumA * batch.coupling[2][k];
+            after[0] += response[0] * friction[1] + response[1] * friction[2];
+            after[1] += response[0] * friction[0] + response[2] * friction[2];
+            after[2] += response[1] * friction[0] + response[2] * friction[1];
+            for (int i = 0; i < batch.pointCount; ++i) sum += total[i];
+            SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, batch.friction * sum, after[0], after[1], after[2],
+                                      solved, more);
+            for (int k = 0; k < 3; ++k) {
+                batch.frictionImpulse[k] = where(solved[k], batch.frictionImpulse[k]);
+                friction[k] += more[k];
+            }
+        }
     if constexpr (kFindsErrors) {
         batch.unsolved = static_cast<uint16_t>(isUnsolved.ToBits() & LanesOf(batch));
         batch.hits = static_cast<uint16_t>(isHit.ToBits() & LanesOf(batch));

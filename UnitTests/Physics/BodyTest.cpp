@@ -329,6 +329,36 @@ TEST_P(OnADisc, ABallRunsOnACircle) {
 
 INSTANTIATE_TEST_SUITE_P(TurnsByItselfOrItsSurface, OnADisc, ::testing::Bool());
 
+// Friction holds what needs less than its limit for its circle, for as long as it lasts.
+TEST(Kinematic, ABoxKeepsItsPlaceOnATurntable) {
+    struct Case {
+        int substeps;
+        double dt;  // s
+    };
+    for (const Case& c :
+         {Case{1, 1.0 / 60}, Case{2, 1.0 / 60}, Case{4, 1.0 / 60}, Case{16, 1.0 / 60}, Case{4, 1.0 / 30}})
+        for (const float half : {0.05f, 0.2f}) {
+            SystemSettings settings = NoSleep();
+            settings.solver.substeps = c.substeps;
+            TestWorld world(settings);
+            const double radius = 2, friction = 0.5, turn = std::sqrt(0.9 * friction * kGravity / radius);
+            const Material material{.friction = static_cast<float>(friction)};
+            world.Add({.shape = Cylinder::Create(0.2f, 4).Value(),
+                       .motion = MotionType::Kinematic,
+                       .position = {0, -0.2, 0},
+                       .angularVelocity = {0, static_cast<float>(turn), 0},
+                       .material = material});
+            const BodyId box = world.Add({.shape = CubeOf(half),
+                                          .position = {radius, double{half}, 0},
+                                          .linearVelocity = {0, 0, static_cast<float>(-turn * radius)},
+                                          .angularVelocity = {0, static_cast<float>(turn), 0},
+                                          .material = material});
+            for (int i = 0; i < static_cast<int>(20 / c.dt); ++i) world.Step(c.dt);
+            const Position at = world.PositionOf(box);
+            EXPECT_NEAR(std::hypot(at.x(), at.z()), radius, 0.002) << c.substeps << " at " << c.dt << ", " << half;
+        }
+}
+
 TEST(Kinematic, TurnsABoxWithATurntable) {
     TestWorld world(NoSleep());
     world.Add({.shape = BoxOf(5, 0.5f, 5),

@@ -89,7 +89,10 @@ public:
         float sum = 0;
         for (int i = 0; i < count_; ++i) sum += point_[i].GetTotalLambda();
         *this = before;
-        const float limit = record_.friction * sum;
+        SolveFriction(v1, v2, record_.friction * sum);
+        SolveNormals(v1, v2);
+    }
+    void SolveFriction(Twist<float>& v1, Twist<float>& v2, float limit) {
         // Both tangents' impulses are found, one after the other, before they are clamped to the cone together.
         const float before1 = tangent1_.GetTotalLambda(), before2 = tangent2_.GetTotalLambda();
         Twist<float> w1 = v1, w2 = v2;
@@ -118,7 +121,12 @@ public:
         }
         const float most = limit * record_.twistRadius;
         twist_.SolveVelocity<BodySide::Dynamic, kSideB>(v1, v2, -most, most);
-        SolveNormals(v1, v2);
+    }
+    // By the impulses that the normals have.
+    void SolveFriction(Twist<float>& v1, Twist<float>& v2) {
+        float sum = 0;
+        for (int i = 0; i < count_; ++i) sum += point_[i].GetTotalLambda();
+        SolveFriction(v1, v2, record_.friction * sum);
     }
     // m/s of the row's motion.
     static float SlipAlong(RowPart<float> row, Twist<float> v1, Twist<float> v2) {
@@ -182,12 +190,17 @@ void CompareWithParts(uint32_t seed) {
         rows.SolveVelocity(v1, v2);
         ExpectNear(contacts.VelocityOf(2 * i), v1, "relaxed, A", i);
         ExpectNear(contacts.VelocityOf(2 * i + 1), v2, "relaxed, B", i);
-        // Where relaxing passes follow, velocity passes leave friction to them, but for that of what moves by itself.
+        // Where relaxing passes follow, velocity passes leave friction to them, but for that of what moves by itself,
+        // which they solve before the normals and after them.
         ContactSolveSettings normalsAlone = kSolve;
         normalsAlone.relaxes = true;
         SolveContactVelocities(batch, contacts.states.data(), normalsAlone);
-        if (kFixedB) rows.SolveVelocity(v1, v2);
-        else rows.SolveNormals(v1, v2);
+        if (kFixedB) {
+            rows.SolveVelocity(v1, v2);
+            rows.SolveFriction(v1, v2);
+        } else {
+            rows.SolveNormals(v1, v2);
+        }
         ExpectNear(contacts.VelocityOf(2 * i), v1, "normals, A", i);
         ExpectNear(contacts.VelocityOf(2 * i + 1), v2, "normals, B", i);
         if (::testing::Test::HasFailure()) return;
