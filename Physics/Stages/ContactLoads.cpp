@@ -168,7 +168,7 @@ public:
             const Pair& pair = pairs.pairs[index];
             return bodies.dynamics[pair.bodyA].inverseMass > 0 && bodies.dynamics[pair.bodyB].inverseMass > 0;
         };
-        if (began.size() < 2 || std::ranges::none_of(began, isOfTwo)) return;
+        if (began.size() < 2 || !std::ranges::any_of(began, isOfTwo)) return;
         const Vector3 g = step.settings.gravity;
         // From top to bottom.
         struct Place {
@@ -187,7 +187,7 @@ public:
             ++loads_[upper].supports;
         }
         std::ranges::sort(places);
-        std::ranges::transform(places, order.begin(), &Place::pair);
+        std::transform(places.begin(), places.end(), order.begin(), [](const Place& place) { return place.pair; });
         order_ = order;
     }
 
