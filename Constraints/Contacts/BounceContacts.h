@@ -59,11 +59,8 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
         hits.time = Select(isHit, Min(hits.time, time), hits.time);
     }
     // With the first one those are hit that would be within the duration of a substep after it: whether points are hit
-    // together does not depend on when the substep ends.
-    WideMask<N> isHit[Hits<Real>::kPoints];
-    for (int i = 0; i < batch.pointCount; ++i)
-        isHit[i] = isAnyHit & mayBeHit[i] & (gap[i] <= approach[i] * (hits.time + h));
-    // All points are hit at that time. Free flight is integrated exactly, including a h^2 / 2 (Integrate.cpp).
+    // together does not depend on when the substep ends. All of them are at that time. Free flight is integrated
+    // exactly, including a h^2 / 2 (Integrate.cpp).
     const Real fall = closing * (h - hits.time), lift = closing * h;
     for (int i = 0; i < batch.pointCount; ++i) {
         const Real way = Min(gap[i], Real(approach[i] * hits.time));
@@ -71,7 +68,8 @@ FULCRUM_FORCE_INLINE Hits<Wide<N>> FindHits(const ContactBatch<N, kFixedB>& batc
         const Real leaving = Sqrt(Max(fall * fall + after * after - lift * lift, zero)) - fall;
         // A body that gravity draws away from what it hits, such as a ball below a ceiling, leaves faster than it came.
         const Real fastest = approach[i] - Real(2.0f) * Min(closing, zero) * h;
-        hits.speed[i] = Select(isHit[i], Clamp(leaving, Real(1e-6f), fastest), zero);
+        const auto isHit = isAnyHit & mayBeHit[i] & (gap[i] <= approach[i] * (hits.time + h));
+        hits.speed[i] = Select(isHit, Clamp(leaving, Real(1e-6f), fastest), zero);
     }
     return hits;
 }
@@ -143,23 +141,12 @@ void BounceContacts(ContactBatch<N, kFixedB>& batch, BodyState* states, const Co
 
     Real impulses[ContactRecord::kMaxPoints];
     const NormalImpulses<Real> normal = FindImpulses(batch, motion, hits.speed, impulses);
-    const auto along = [&](const Vec3<Real>& v, const Vec3<Real>& axis) { return Dot<Real>(v, axis); };
-    Real tangential[3] = {along(relative.linear, batch.tangent1), along(relative.linear, batch.tangent2),
-                          along(relative.angular, batch.normal)};
-    if constexpr (!kFixedB)
-        if (batch.hasSurface) {
-            const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, settings.rare->surfaceVelocities);
-            tangential[0] = MoveBy(tangential[0], surface.v1);
-            tangential[1] = MoveBy(tangential[1], surface.v2);
-            tangential[2] = MoveBy(tangential[2], surface.spin);
-        }
-    Real left[3];  // after the normal impulses
-    for (int k = 0; k < 3; ++k)
-        left[k] = tangential[k] + normal.sum * batch.coupling[0][k] + normal.sumB * batch.coupling[1][k] -
-                  normal.sumA * batch.coupling[2][k];
+    Real slip[3];
+    FindSlip<true>(batch, relative, settings, slip);
+    AddSlipByNormals(batch, normal, slip);
     const Real none[3] = {zero, zero, zero};
     Real friction[3], change[3];
-    SolveFriction<N, kFixedB>(batch, none, batch.friction * normal.sum, left[0], left[1], left[2], friction, change);
+    SolveFriction<N, kFixedB>(batch, none, batch.friction * normal.sum, slip, friction, change);
 
     Twists<N, kFixedB> changed = velocity;
     ApplyToBoth<N, kFixedB>(batch, changed,

@@ -9,20 +9,19 @@ namespace fulcrum::contacts {
 // The friction rows. Sticking: the impulse that stops the slip, if it is inside the friction cone. Sliding: the impulse
 // on the cone that opposes the slip, found by a projected gradient step with one mass for all directions, because
 // bodies also rotate and the impulse that stops the slip is not parallel to it. Then torsional friction. limit: N s,
-// friction times the sum of the normal impulses. Computes the totals of t1, t2 and twist, and their change from
-// `total`.
+// friction times the sum of the normal impulses. slip: m/s along t1 and t2, rad/s
+// about n. Computes the totals of t1, t2 and twist, and their change from `total`.
 template <int N, bool kFixedB>
 FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, const Wide<N> (&total)[3], Wide<N> limit,
-                                        Wide<N> v1, Wide<N> v2, Wide<N> wn, Wide<N> (&solved)[3],
-                                        Wide<N> (&change)[3]) {
+                                        const Wide<N> (&slip)[3], Wide<N> (&solved)[3], Wide<N> (&change)[3]) {
     using Real = Wide<N>;
     const Real* inverse = batch.frictionInverse;
     const Real* response = batch.frictionResponse;
-    const Real step1 = -inverse[0] * v1;
-    const Real step2 = -inverse[1] * (v2 + response[0] * step1);
+    const Real step1 = -inverse[0] * slip[0];
+    const Real step2 = -inverse[1] * (slip[1] + response[0] * step1);
     const Real stick1 = total[0] + step1, stick2 = total[1] + step2;
     const auto sticks = stick1 * stick1 + stick2 * stick2 <= limit * limit;
-    const Real slide1 = total[0] - batch.slideMass * v1, slide2 = total[1] - batch.slideMass * v2;
+    const Real slide1 = total[0] - batch.slideMass * slip[0], slide2 = total[1] - batch.slideMass * slip[1];
     const Real lengthSquared = slide1 * slide1 + slide2 * slide2;
     const Real scale =
         Select(lengthSquared <= limit * limit, Real(1.0f), limit / Sqrt(Max(lengthSquared, Real(1e-30f))));
@@ -32,7 +31,7 @@ FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, c
     change[1] = solved[1] - total[1];
 
     const Real twistLimit = limit * batch.twistRadius;
-    const Real spin = wn + response[1] * change[0] + response[2] * change[1];
+    const Real spin = slip[2] + response[1] * change[0] + response[2] * change[1];
     solved[2] = Clamp(total[2] - inverse[2] * spin, -twistLimit, twistLimit);
     change[2] = solved[2] - total[2];
 }
@@ -41,6 +40,30 @@ FULCRUM_FORCE_INLINE void SolveFriction(const ContactBatch<N, kFixedB>& batch, c
 template <class Real>
 FULCRUM_FORCE_INLINE Real MoveBy(Real velocity, Real surface) {
     return Select(surface == Real(0.0f), velocity, velocity + surface);
+}
+
+// m/s along t1 and t2, rad/s about n. kHasSurfaces: two dynamic bodies may have a surface velocity.
+template <bool kHasSurfaces, int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void FindSlip(const ContactBatch<N, kFixedB>& batch, const Twist<Wide<N>>& relative,
+                                   const ContactSolveSettings& settings, Wide<N> (&slip)[3]) {
+    slip[0] = Dot<Wide<N>>(relative.linear, batch.tangent1);
+    slip[1] = Dot<Wide<N>>(relative.linear, batch.tangent2);
+    slip[2] = Dot<Wide<N>>(relative.angular, batch.normal);
+    if constexpr (kHasSurfaces && !kFixedB)
+        if (batch.hasSurface) {
+            const SurfaceMotion<Wide<N>> surface = GatherSurfaceMotion(batch, settings.rare->surfaceVelocities);
+            slip[0] = MoveBy(slip[0], surface.v1);
+            slip[1] = MoveBy(slip[1], surface.v2);
+            slip[2] = MoveBy(slip[2], surface.spin);
+        }
+}
+// Adds to the slip what impulses of the normals change of it.
+template <int N, bool kFixedB>
+FULCRUM_FORCE_INLINE void AddSlipByNormals(const ContactBatch<N, kFixedB>& batch, const NormalImpulses<Wide<N>>& normal,
+                                           Wide<N> (&slip)[3]) {
+    for (int k = 0; k < 3; ++k)
+        slip[k] = slip[k] + normal.sum * batch.coupling[0][k] + normal.sumB * batch.coupling[1][k] -
+                  normal.sumA * batch.coupling[2][k];
 }
 
 // The unconstrained velocities: without the constraint impulses of this substep, but with those of impacts; `solved` if
@@ -256,7 +279,12 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         }
     };
     findSpeeds();
-    [[maybe_unused]] Real friction[3], slip[3];  // slip: m/s along t1 and t2, rad/s about n, before friction
+    [[maybe_unused]] Real friction[3], slip[3];
+    [[maybe_unused]] const auto frictionLimit = [&] {
+        Real sum = zero;
+        for (int i = 0; i < batch.pointCount; ++i) sum += total[i];
+        return batch.friction * sum;
+    };
     // If relax iterations follow, only lanes with a moving kinematic body or a surface velocity have friction here: a
     // load on a turntable or belt would otherwise lag one substep behind. Other lanes stay bit-identical.
     [[maybe_unused]] WideMask<N> rides;
@@ -269,21 +297,9 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         // Friction comes first, so non-penetration wins; but its limit is computed from the normal impulses of this
         // iteration, not of the previous one.
         SweepNormals<kPass>(batch, settings, stiffer, speed, total);
-        Real sum = zero;
-        for (int i = 0; i < batch.pointCount; ++i) sum += total[i];
-        slip[0] = Dot<Real>(relative.linear, batch.tangent1);
-        slip[1] = Dot<Real>(relative.linear, batch.tangent2);
-        slip[2] = Dot<Real>(relative.angular, batch.normal);
-        if constexpr (kRare && !kFixedB)
-            if (batch.hasSurface) {
-                const SurfaceMotion<Real> surface = GatherSurfaceMotion(batch, settings.rare->surfaceVelocities);
-                slip[0] = MoveBy(slip[0], surface.v1);
-                slip[1] = MoveBy(slip[1], surface.v2);
-                slip[2] = MoveBy(slip[2], surface.spin);
-            }
+        FindSlip<kRare>(batch, relative, settings, slip);
         Real solved[3];
-        SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, batch.friction * sum, slip[0], slip[1], slip[2], solved,
-                                  friction);
+        SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, frictionLimit(), slip, solved, friction);
         for (int k = 0; k < 3; ++k) {
             batch.frictionImpulse[k] = where(solved[k], batch.frictionImpulse[k]);
             motion.linear = where(motion.linear + batch.coupling[0][k] * friction[k], motion.linear);
@@ -293,7 +309,7 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         findSpeeds();
     }
     NormalImpulses<Real> changes;
-    if (batch.pointCount > 1) {
+    if (batch.pointCount > 1) {  // most contacts are slower than all that is solved together
         Real largest = zero;
         for (int i = 0; i < batch.pointCount; ++i)
             largest = Max(largest, Select(batch.rows[i].impulse > zero, Abs(speed[i]), -speed[i]));
@@ -319,17 +335,13 @@ FULCRUM_FORCE_INLINE void SolveRows(ContactBatch<N, kFixedB>& batch, BodyState* 
         if (settings.relaxes && rides.Any()) {
             // Once more after the normals, which change the slip: a load on a turntable would creep inwards.
             const Real* response = batch.frictionResponse;
-            Real after[3], sum = zero, solved[3], more[3];
-            for (int k = 0; k < 3; ++k)
-                after[k] = slip[k] + friction[k] * InverseOrZero(batch.frictionInverse[k]) +
-                           changes.sum * batch.coupling[0][k] + changes.sumB * batch.coupling[1][k] -
-                           changes.sumA * batch.coupling[2][k];
-            after[0] += response[0] * friction[1] + response[1] * friction[2];
-            after[1] += response[0] * friction[0] + response[2] * friction[2];
-            after[2] += response[1] * friction[0] + response[2] * friction[1];
-            for (int i = 0; i < batch.pointCount; ++i) sum += total[i];
-            SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, batch.friction * sum, after[0], after[1], after[2],
-                                      solved, more);
+            for (int k = 0; k < 3; ++k) slip[k] += friction[k] * InverseOrZero(batch.frictionInverse[k]);
+            AddSlipByNormals(batch, changes, slip);
+            slip[0] += response[0] * friction[1] + response[1] * friction[2];
+            slip[1] += response[0] * friction[0] + response[2] * friction[2];
+            slip[2] += response[1] * friction[0] + response[2] * friction[1];
+            Real solved[3], more[3];
+            SolveFriction<N, kFixedB>(batch, batch.frictionImpulse, frictionLimit(), slip, solved, more);
             for (int k = 0; k < 3; ++k) {
                 batch.frictionImpulse[k] = where(solved[k], batch.frictionImpulse[k]);
                 friction[k] += more[k];

@@ -56,7 +56,7 @@ void RefillContact(ContactBatch<N, kFixedB>& batch, int lane, const ContactRecor
         after.bodyB[0] = 1;
         PrepareContacts<1, kFixedB>(after, records, bodies, settings);
         if (after.isGuided) LimitGuidedPushes(after);
-        // At the start of the step, of which a surface velocity is.
+        // Velocities are those at the start of the step. A listener gave its surface velocity then: it stays.
         if constexpr (kFixedB) {
             auto& side = after.sideB;
             if (record.Has(ContactRecord::kSurfaceVelocity)) side = before.sideB;

@@ -1,5 +1,6 @@
-// Conveyor belts (surface velocities), against closed forms.
+// Conveyor belts (surface velocities), and what turns like one, against closed forms.
 #include <Fulcrum/Collision/Shapes/Plane.h>
+#include <Fulcrum/Collision/Shapes/RoundShapes.h>
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
@@ -233,6 +234,49 @@ TEST(Belt, RunsOnMeshesPlanesAndCompoundsAlike) {
         EXPECT_NEAR(world.VelocityOf(prism).x(), 1.5, 1e-4) << ShapeTypeName(shape->Type());
     }
 }
+
+// A ball that rolls without slip on a disc that turns at W runs on a circle at 2 / 7 W, at constant speed, whatever its
+// size (S. Earnshaw, Dynamics, 1844). Likewise where only the disc's surface turns.
+class OnADisc : public ::testing::TestWithParam<bool> {};
+
+TEST_P(OnADisc, ABallRunsOnACircle) {
+    const bool surfaceTurns = GetParam();
+    for (const double turn : {1.0, 4.0})
+        for (const int substeps : {1, 4, 16}) {
+            SystemSettings settings = NoSleep();
+            settings.solver.substeps = substeps;
+            TestWorld world(settings);
+            const Material rough{.friction = 1.5f};
+            OneBelt surface;
+            surface.turning = Vector3(0, static_cast<float>(turn), 0);
+            surface.body = world.Add({.shape = Cylinder::Create(0.5f, 20).Value(),
+                                      .motion = surfaceTurns ? MotionType::Static : MotionType::Kinematic,
+                                      .position = {0, -0.5, 0},
+                                      .angularVelocity = surfaceTurns ? Vector3::Zero() : surface.turning,
+                                      .material = rough});
+            if (surfaceTurns) world.System().SetContactListener(&surface);
+            const double radius = 0.2, x = 0.5, z = -0.4, vx = 0.6, vz = 0.2;
+            const BodyId ball = world.Add({.shape = SphereOf(0.2f), .position = {x, radius, z}, .material = rough});
+            // The velocity of the disc there, less the ball's, is that of the ball's lowest point by its rotation.
+            const double slipX = turn * z - vx, slipZ = -turn * x - vz;
+            ASSERT_TRUE(world.Bodies().SetVelocity(
+                ball, {static_cast<float>(vx), 0, static_cast<float>(vz)},
+                {static_cast<float>(-slipZ / radius), 0, static_cast<float>(slipX / radius)}));
+            const double speed = std::hypot(vx, vz), k = 2.0 / 7 * turn;
+            for (int i = 1; i <= 480; ++i) {
+                world.Step();
+                const double t = i * kStep, along = std::sin(k * t) / k, across = (1 - std::cos(k * t)) / k;
+                const Position at = world.PositionOf(ball);
+                const double off =
+                    std::hypot(at.x() - (x + along * vx + across * vz), at.z() - (z + along * vz - across * vx));
+                ASSERT_LT(off, 0.001 * 8 * speed) << turn << " at " << substeps << ", step " << i;
+                ASSERT_NEAR(double{Length(world.VelocityOf(ball))} / speed, 1, 0.005)
+                    << turn << " at " << substeps << ", step " << i;
+            }
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(TurnsByItselfOrItsSurface, OnADisc, ::testing::Bool());
 
 }  // namespace
 }  // namespace fulcrum::testing

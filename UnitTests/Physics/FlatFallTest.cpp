@@ -1,8 +1,8 @@
 // What falls flat onto flat ground stays where it is: impacts of its corners, found one after the other, must not make
 // it spin or slide.
 #include <Fulcrum/Collision/Shapes/TriangleMesh.h>
-#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/Cases.h>
+#include <Fulcrum/UnitTests/Support/RandomPoses.h>
 #include <Fulcrum/UnitTests/Support/TestWorld.h>
 
 #include <algorithm>
