@@ -55,7 +55,8 @@ struct JointSettings {
     int substeps = 0;            // 0..64
     int velocityIterations = 0;  // 0..255
     int positionIterations = 0;  // 0..255
-    // m, >= 0, in place of AccuracyTarget::jointError: how far apart its anchors may be; 0: as that, infinite: anyhow.
+    // m, >= 0, in place of AccuracyTarget::jointError: how far apart its anchors may be before its mechanism is solved
+    // directly; 0: as that, infinite: anyhow.
     float errorTarget = 0;
     // Mass scales of the two bodies in this joint. Mechanisms with such a joint are not solved directly.
     MassOverride massOverride{};

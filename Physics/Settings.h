@@ -154,26 +154,18 @@ struct SleepSettings {
     float linearSpeed = 0.05f;
 };
 
-// Target accuracy of resting contacts and of joints: islands that need it get more substeps than the system's
-// (Docs/Step.md). Other islands do not cost more. Bodies and joints may have targets of their own
+// Target accuracy of resting contacts and of joints: islands that would miss it are solved directly, where that costs
+// little (Docs/Step.md). Other islands do not cost more. Bodies and joints may have targets of their own
 // (BodySettings::penetrationTarget, JointSettings::errorTarget).
 struct AccuracyTarget {
-    // Allowed penetration at a contact, as a fraction of the smaller body's size (half an edge of a cube), > 0;
-    // infinite: never more substeps. Slender islands, such as columns, get as many as keep them upright with a safety
-    // factor of four at 0.004, in inverse proportion to this.
+    // Allowed penetration at a contact with the settings' effort, as a fraction of the smaller body's size (half an
+    // edge of a cube), > 0; infinite: no island is solved directly for that. Slender islands, such as columns, count as
+    // if they sank by more, so that they stand with a safety factor of four at 0.004, in inverse proportion to this;
+    // walls of 768 constraints and more get more substeps.
     float penetration = 0.004f;
-    // m, > 0: allowed distance of a joint's anchors along locked directions; infinite: never more substeps for that.
-    // Controlled by the measured error, with a delay of some tenths of a second.
+    // m, > 0: allowed distance of a joint's anchors along locked directions; infinite: any. By the measured error: a
+    // mechanism with a joint beyond it for eight steps is solved directly from then on, until it sleeps.
     float jointError = std::numeric_limits<float>::infinity();
-    // m/s, > 0: how fast the anchors of a joint may part along what it locks as a step ends; infinite: no island has
-    // more substeps for that. Measured likewise.
-    float drift = std::numeric_limits<float>::infinity();
-    // 1..255, of gaps of joints 64 at most; a load of 10^4 times the weight of what carries it needs 181.
-    int mostSubsteps = 181;
-    // Whether islands of 768 constraints and more get additional substeps for all of this. If not, they get only those
-    // that the weight on small bodies requires: few contacts of a large pile carry much, but all of them are solved
-    // with the same effort.
-    bool largeIslands = false;
 };
 
 // Selects the events of PhysicsSystem::Events. Events that are off cost nothing.

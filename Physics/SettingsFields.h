@@ -225,9 +225,6 @@ template <class Archive>
 void Describe(Archive& archive, AccuracyTarget& s) {
     archive.Field("penetration", s.penetration);
     archive.Field("jointError", s.jointError);
-    archive.Field("drift", s.drift);
-    archive.Field("mostSubsteps", s.mostSubsteps);
-    archive.Field("largeIslands", s.largeIslands);
 }
 
 template <class Archive>

@@ -166,8 +166,6 @@ MaybeError Check(const SystemSettings& s) {
             CheckRange("solver.substeps", s.solver.substeps, 1, 255),
             CheckPositiveOrInfinite("accuracy.penetration", s.accuracy.penetration),
             CheckPositiveOrInfinite("accuracy.jointError", s.accuracy.jointError),
-            CheckPositiveOrInfinite("accuracy.drift", s.accuracy.drift),
-            CheckRange("accuracy.mostSubsteps", s.accuracy.mostSubsteps, 1, 255),
             CheckRange("solver.velocityIterations", s.solver.velocityIterations, 1, 255),
             CheckRange("solver.positionIterations", s.solver.positionIterations, 0, 255),
             CheckEnum("solver.positionCorrection", s.solver.positionCorrection, PositionCorrection::Baumgarte),

@@ -83,8 +83,8 @@ public:
         if (error_) return;
         for (const auto& [name, value] : node_.items()) {
             if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
-            if (path_ == "settings" && (name == "jointFrequency" || name == "jointDampingRatio")) {
-                document_.notes.push_back(PathOf(name) + " has no effect: locks of joints are hard");
+            if (const char* why = FormerName(PathOf(name))) {
+                document_.notes.push_back(PathOf(name) + " has no effect: " + why);
                 continue;
             }
             error_ = WrongAt(PathOf(name), "an unknown name; known are " + ListOf(known_));

@@ -96,8 +96,6 @@ std::vector<Feature> Features() {
         jointed("joint:ball", Joined<PointJointSettings>()),
         jointed("joint:ball_breakable", Joined<PointJointSettings>([](auto& s) { s.breakForce = 1e9f; })),
         jointed("joint:ball_target", Joined<PointJointSettings>([](auto& s) { s.errorTarget = 0.001f; })),
-        jointed("joint:ball_drift", Joined<PointJointSettings>(),
-                [](SystemSettings& s) { Float(s), s.accuracy.drift = 1; }),
         jointed("joint:ball_mass_override",
                 Joined<PointJointSettings>([](auto& s) { s.massOverride.inverseMassScaleA = 0.5f; })),
         jointed("joint:fixed", Joined<FixedJointSettings>()),

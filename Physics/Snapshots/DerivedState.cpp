@@ -57,7 +57,6 @@ void SnapshotAccess::Resize(JointStore& joints, uint32_t count) {
     joints.records.resize(count);
     joints.types.resize(count);
     joints.joints.resize(count);
-    joints.gaps.resize(count);
     joints.breakable.words_.assign((count + 63) / 64, 0);
     joints.breakable.size_ = 0;
 }

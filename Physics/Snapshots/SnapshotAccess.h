@@ -218,13 +218,12 @@ void SnapshotAccess::VisitFree(Stream& s, Pairs& store) {
 
 template <class Stream, class Joints>
 bool SnapshotAccess::VisitJoints(Stream& s, Joints& store) {
-    auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, moved, first, free, count] = store;
+    auto& [records, types, joints, breakable, targetCount, strainVersion, moved, first, free, count] = store;
     s.Begin(SnapshotSection::Joints);
     for (uint32_t i = 0; i < joints.size(); ++i) {
         s.Reserve(kMostOfJoint);
         bool isBreakable = breakable.Contains(i);
         if (VisitJoint(s, joints[i], isBreakable)) {
-            VisitGap(s, gaps[i]);
             VisitJointRecord(s, records[i]);
             if (!VisitType(s, *types[i])) return false;
             if constexpr (!Stream::kWrites)
@@ -288,7 +287,6 @@ void SnapshotAccess::VisitStep(Stream& s, World& world, Step& step, SavedEfforts
     s.Reserve(64);
     s(efforts.areCurrent);
     VisitList(s, efforts.groups, 32, [&](auto& group) { VisitSavedEffort(s, group); });
-    s.List(efforts.contacts);
     s.EndBlock();
 }
 

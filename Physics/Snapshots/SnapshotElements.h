@@ -19,16 +19,14 @@ struct IsPlain<JointId> : std::true_type {};
 template <>
 struct IsPlain<ColliderRun> : std::true_type {};
 template <>
-struct IsPlain<SolvedContact> : std::true_type {};
-template <>
 struct IsPlain<LoadLevel> : std::true_type {};
 template <>
 struct IsPlain<ContactRecord::Point> : std::true_type {};
 // 15 floats, two bytes and 16 bits: no padding.
 template <>
 struct IsPlain<BodyDynamics> : std::true_type {};
-static_assert(sizeof(BodyId) == 8 && sizeof(JointId) == 8 && sizeof(ColliderRun) == 12 && sizeof(SolvedContact) == 8 &&
-              sizeof(LoadLevel) == 4 && sizeof(ContactRecord::Point) == 24);
+static_assert(sizeof(BodyId) == 8 && sizeof(JointId) == 8 && sizeof(ColliderRun) == 12 && sizeof(LoadLevel) == 3 &&
+              sizeof(ContactRecord::Point) == 24);
 
 // Bit fields, which cannot be bound by reference.
 template <class Stream, class... Bits>
@@ -64,11 +62,11 @@ void VisitSystemSettings(Stream& s, Settings& settings) {
            contactFrequency, contactDampingRatio, contactPushSpeed, depenetrationSpeed, exactJointLoad, jointPushSpeed,
            restitutionSpeed, boundsMargin, layerCollides] = settings;
     auto& [substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop] = solver;
-    auto& [penetration, jointError, drift, mostSubsteps, largeIslands] = accuracy;
+    auto& [penetration, jointError] = accuracy;
     auto& [sleepEnabled, sleepSeconds, sleepSpeed] = sleep;
     auto& [reportsContacts, reportsStays, reportsBodies] = events;
     s(gravity, substeps, velocityIterations, positionIterations, positionCorrection, baumgarte, baumgarteSlop);
-    s(penetration, jointError, drift, mostSubsteps, largeIslands, sleepEnabled, sleepSeconds, sleepSpeed, narrowPhase);
+    s(penetration, jointError, sleepEnabled, sleepSeconds, sleepSpeed, narrowPhase);
     s(speculativeDistance, penetrationSlop, contactFrequency, contactDampingRatio, contactPushSpeed);
     s(depenetrationSpeed, exactJointLoad, jointPushSpeed, restitutionSpeed);
     s(boundsMargin, layerCollides, reportsContacts, reportsStays, reportsBodies, measuresErrors);
@@ -78,24 +76,6 @@ template <class Stream, class Override>
 FULCRUM_INLINE_IN_LOOP void VisitMassOverride(Stream& s, Override& massOverride) {
     auto& [massA, inertiaA, massB, inertiaB] = massOverride;
     s(massA, inertiaA, massB, inertiaB);
-}
-
-// A trial is written only where there is one.
-template <class Stream, class Gap>
-void VisitGap(Stream& s, Gap& gap) {
-    constexpr uint8_t kHasTrial = 0x80;  // of the level, which is at most 31
-    auto& [load, trial] = gap;
-    LoadLevel stored = load;
-    if (trial.error > 0) stored.level |= kHasTrial;
-    s(stored);
-    const bool hasTrial = (stored.level & kHasTrial) != 0;
-    if constexpr (!Stream::kWrites) {
-        stored.level &= static_cast<uint8_t>(~kHasTrial);
-        gap = {.load = stored, .trial = {}};
-    }
-    if (!hasTrial) return;
-    auto& [error, effort, least, most, level, isInVain, steps] = trial;
-    s(error, effort, least, most, level, isInVain, steps);
 }
 
 template <class Stream, class Effort>
@@ -329,8 +309,8 @@ void VisitJointRecord(Stream& s, Record& record) {
 template <class Stream, class Joint>
 bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     auto& [body, next, type, locks, maxRows, neighbors, color, generation, exists, enabled, collideConnected,
-           overridesMass, fixed, isStrained, wasPastLimit, priority, breakForce, breakTorque, effort, errorTarget,
-           massOverride, userData] = joint;
+           overridesMass, fixed, isStrained, wasPastLimit, isBeyondTarget, stepsBeyond, priority, breakForce,
+           breakTorque, effort, errorTarget, massOverride, userData] = joint;
     s(generation, exists);
     if (!exists) return false;
     auto& [linear, angular, line, axis] = locks;
@@ -341,7 +321,7 @@ bool VisitJoint(Stream& s, Joint& joint, bool& isBreakable) {
     VisitEffort(s, effort);
     if (overridesMass) VisitMassOverride(s, massOverride);
     else if constexpr (!Stream::kWrites) massOverride = {};
-    s(isStrained, wasPastLimit);
+    s(isStrained, wasPastLimit, isBeyondTarget, stepsBeyond);
     return true;
 }
 
@@ -405,8 +385,8 @@ void VisitBroken(Stream& s, Broken& joint) {
 
 template <class Stream, class Group>
 void VisitSavedEffort(Stream& s, Group& group) {
-    auto& [body, culprit, effort, stiffness, wantedStiffness, isLoaded] = group;
-    s(body, culprit, stiffness, wantedStiffness, isLoaded);
+    auto& [body, culprit, effort, isLoaded, isWaiting] = group;
+    s(body, culprit, isLoaded, isWaiting);
     VisitEffort(s, effort);
 }
 

@@ -99,15 +99,65 @@ void RepeatLast(ContactBatch<N, kFixedB>& batch, int count) {
     }
 }
 
-// A batch for each contact without a color.
-template <bool kFixedB>
-void SetContacts(Array<ContactBatch<1, kFixedB>>& batches, const Array<Entry>& entries) {
+// A batch for each contact without a color; but for those that are solved directly, which SortConstraints has sorted.
+template <bool kFixedB, class IsDirect>
+void SetContacts(Array<ContactBatch<1, kFixedB>>& batches, const Array<Entry>& entries, const IsDirect& isDirect) {
     batches.resize(entries.size());
-    for (size_t i = 0; i < entries.size(); ++i) {
-        batches[i].count = 1;
-        SetContact(batches[i], 0, entries[i]);
+    size_t count = 0;
+    for (const Entry& entry : entries) {
+        if (isDirect(entry)) continue;
+        batches[count].count = 1;
+        SetContact(batches[count++], 0, entry);
     }
+    batches.resize(count);
 }
+
+// Contacts without a color that are solved directly: each is a color of its group.
+class Singles {
+public:
+    Singles(const ConstraintColoring& coloring, ScratchArena& scratch)
+        : overflow_(coloring.At(ConstraintColoring::kOverflow)),
+          singles_(scratch.Allocate<Single>(overflow_.Of(Kind::Moving).size() + overflow_.Of(Kind::Fixed).size())) {}
+
+    template <class IsIn>
+    void AddColors(SolverLayout& layout, const IsIn& isIn) {
+        const auto add = [&](Kind kind, BatchKind batches, auto& list) {
+            for (const Entry& entry : overflow_.Of(kind)) {
+                if (!isIn(entry)) continue;
+                singles_[count_++] = {batches, list.count, entry};
+                ColorBatches color;
+                ForEachBatchList(layout, [&](const auto& each, BatchKind k) {
+                    color.of[k] = {each.count, each.count};
+                });
+                color.of[batches].end = ++list.count;
+                layout.colors.push_back(color);
+            }
+        };
+        add(Kind::Moving, kMovingContacts, layout.moving);
+        add(Kind::Fixed, kFixedContacts, layout.fixed);
+    }
+    // Once there is room for all batches.
+    void Set(SolverLayout& layout) const {
+        const auto set = [](auto& batch, const Entry& entry) {
+            SetContact(batch, 0, entry);
+            RepeatLast(batch, 1);
+        };
+        for (const Single& single : singles_.first(count_)) {
+            if (single.kind == kMovingContacts) set(layout.moving.batches[single.batch], single.entry);
+            else set(layout.fixed.batches[single.batch], single.entry);
+        }
+    }
+
+private:
+    struct Single {
+        BatchKind kind;
+        uint32_t batch;
+        Entry entry;
+    };
+    const ConstraintColoring::Color& overflow_;
+    std::span<Single> singles_;
+    size_t count_ = 0;
+};
 
 void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring, const Islands& islands,
                      JointStore& store, SolverLayout& layout, ScratchArena& scratch) {
@@ -126,6 +176,7 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     count(Kind::Fixed, fixed);
     std::span<const SortedJoint> joints = SortJoints(bodies, coloring, islands, store, layout, scratch);
     layout.colors.clear();
+    Singles singles(coloring, scratch);
     uint64_t used = 0;
     for (uint32_t g = 0; g < islands.groups; ++g) {
         layout.groups[g].colorsBegin = static_cast<uint32_t>(layout.colors.size());
@@ -142,6 +193,8 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
             MakeJointBatches(bodies, store, key, joints, layout, color);
             layout.colors.push_back(color);
         }
+        if (layout.groups[g].isDirect)
+            singles.AddColors(layout, [&](const Entry& entry) { return GroupOf(bodies, islands, entry) == g; });
         layout.groups[g].colorsEnd = static_cast<uint32_t>(layout.colors.size());
     }
     layout.colorCount = static_cast<uint32_t>(std::popcount(used));
@@ -159,6 +212,7 @@ void SortConstraints(const BodyStore& bodies, const ConstraintColoring& coloring
     };
     sort(Kind::Moving, moving, layout.moving);
     sort(Kind::Fixed, fixed, layout.fixed);
+    singles.Set(layout);
 }
 
 // What rests stays where it is with substeps of any length, if it is solved directly. Not where that has taken long
@@ -175,89 +229,22 @@ void NoteResting(const StepContext& step, const BodyStore& bodies, SolverLayout&
     }
 }
 
-// Calls visit(index of the contact) for the contacts of a group.
-template <class Visit>
-void VisitContacts(const SolverLayout& layout, const SolverGroup& group, Visit&& visit) {
-    for (uint32_t c = group.colorsBegin; c < group.colorsEnd; ++c) {
-        const auto visitRange = [&](const auto& batches, const BatchRange& range) {
-            for (uint32_t i = range.begin; i < range.end; ++i)
-                for (int lane = 0; lane < batches[i].count; ++lane) visit(batches[i].contact[lane]);
-        };
-        visitRange(layout.moving.batches, layout.colors[c].of[kMovingContacts]);
-        visitRange(layout.fixed.batches, layout.colors[c].of[kFixedContacts]);
-    }
-}
-
-// Calls visit({pair, substeps}) for the contacts of groups with substeps of their own, without those that were removed
-// since the layout was made.
-template <class Visit>
-void VisitContactsUnderLoad(const SolverLayout& layout, const PairStore& pairs, Visit&& visit) {
-    for (const SolverGroup& group : layout.groups)
-        if (group.effort.substeps > 0)
-            VisitContacts(layout, group, [&](uint32_t contact) {
-                const uint32_t pair = pairs.contacts[contact].pair;
-                if (pair != PairStore::kNone) visit(SolvedContact{pair, group.effort.substeps});
-            });
-}
-
-std::span<const SolvedContact> ContactsUnderLoad(const SolverLayout& layout, const PairStore& pairs,
-                                                 const SavedEfforts& saved, ScratchArena& scratch) {
-    if (saved.areRestored) return saved.contacts;
-    size_t count = 0;
-    VisitContactsUnderLoad(layout, pairs, [&](const SolvedContact&) { ++count; });
-    std::span<SolvedContact> contacts = scratch.Allocate<SolvedContact>(count);
-    size_t next = 0;
-    VisitContactsUnderLoad(layout, pairs, [&](const SolvedContact& contact) { contacts[next++] = contact; });
-    return contacts;
-}
-
-// Records store impulses scaled to the system's substeps. The impulse of an impact in a short substep is not a
-// persistent force: when substeps become longer, its warm start is scaled by at most two, as when the time step grows.
-void LimitImpulses(std::span<const SolvedContact> before, const SolverLayout& layout, int usualSubsteps,
-                   PairStore& pairs, ScratchArena& scratch) {
-    if (before.empty()) return;
-    std::span<uint8_t> substeps = scratch.Allocate<uint8_t>(pairs.pairs.size());
-    std::fill(substeps.begin(), substeps.end(), static_cast<uint8_t>(usualSubsteps));
-    for (const SolverGroup& group : layout.groups)
-        if (group.effort.substeps > usualSubsteps)
-            VisitContacts(layout, group, [&](uint32_t contact) {
-                substeps[pairs.contacts[contact].pair] = static_cast<uint8_t>(group.effort.substeps);
-            });
-    for (const SolvedContact& solved : before) {
-        const int most = 2 * substeps[solved.pair];
-        const uint32_t contact = pairs.pairs[solved.pair].contact;
-        if (solved.substeps <= most || contact == PairStore::kNone) continue;
-        const float part = static_cast<float>(most) / static_cast<float>(solved.substeps);
-        ContactRecord& record = pairs.records[contact];
-        for (float& impulse : record.impulse) impulse *= part;
-        for (float& impulse : record.frictionImpulse) impulse *= part;
-        record.twistImpulse *= part;
-    }
-}
-
 }  // namespace
 
 void DescribeEfforts(const SolverLayout& layout, const ConstraintColoring& coloring, const PairStore& pairs,
                      const SavedEfforts& restored, SavedEfforts& described) {
     if (restored.areRestored) {
         described = restored;
-        std::erase_if(described.contacts, [&](const SolvedContact& solved) {
-            return solved.pair >= pairs.pairs.size() || pairs.pairs[solved.pair].contact == PairStore::kNone;
-        });
         described.areCurrent = restored.AreTaken(coloring, pairs);
         if (!described.areCurrent) described.groups.clear();
         return;
     }
     described.areCurrent = layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion;
     described.groups.clear();
-    described.contacts.clear();
-    VisitContactsUnderLoad(layout, pairs, [&](const SolvedContact& contact) { described.contacts.push_back(contact); });
-    std::ranges::sort(described.contacts, {}, &SolvedContact::pair);
     if (!described.areCurrent) return;
     for (const IslandWithEffort& island : layout.efforts) {
         const SolverGroup& group = layout.groups[island.group];
-        described.groups.push_back(
-            {island.body, island.culprit, group.effort, group.stiffness, group.wantedStiffness, group.isLoaded});
+        described.groups.push_back({island.body, island.culprit, group.effort, group.isLoaded, island.isWaiting});
     }
     std::ranges::sort(described.groups, {}, &SavedEffort::body);
 }
@@ -267,19 +254,10 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
                   SavedEfforts& saved, ScratchArena& scratch) {
     NoteWeights(step, began, bodies, joints, pairs, scratch);
     if (step.Lengthens()) NoteForces(step, coloring, bodies, joints, pairs);
-    const auto stiffen = [](auto& groups) {
-        for (auto& group : groups)
-            if (group.stiffness < group.wantedStiffness) ++group.stiffness;
-    };
-    if (step.number % StepsFor(1, step) == 0) {
-        stiffen(layout.groups);
-        stiffen(saved.groups);
-    }
     if (layout.version == coloring.Version() && layout.loadVersion == pairs.loadVersion)
         return NoteResting(step, bodies, layout);
     layout.version = coloring.Version();
     layout.loadVersion = pairs.loadVersion;
-    const std::span<const SolvedContact> underLoad = ContactsUnderLoad(layout, pairs, saved, scratch);
     const bool asSaved = saved.AreTaken(coloring, pairs);
     ForEachBatchList(layout, [](auto& list, BatchKind) { list.count = 0; });
     FindHardMechanisms(bodies, coloring, joints, step.settings, layout.hard, scratch);
@@ -288,11 +266,13 @@ void BuildIslands(const StepContext& step, const BodyStore& bodies, const Constr
     layout.islands = islands.islands;
     SortBodies(bodies, islands, layout, scratch);
     SortConstraints(bodies, coloring, islands, joints, layout, scratch);
-    if (!asSaved) LimitImpulses(underLoad, layout, step.settings.solver.substeps, pairs, scratch);
     ForEachBatchList(layout, [](auto& list, BatchKind) { GrowTo(list.batches, list.count); });
     const ConstraintColoring::Color& overflow = coloring.At(ConstraintColoring::kOverflow);
-    SetContacts(layout.overflowMoving, overflow.Of(Kind::Moving));
-    SetContacts(layout.overflowFixed, overflow.Of(Kind::Fixed));
+    layout.uncolored = static_cast<uint32_t>(overflow.Of(Kind::Joint).size() + overflow.Of(Kind::Moving).size() +
+                                             overflow.Of(Kind::Fixed).size());
+    const auto isDirect = [&](const Entry& entry) { return layout.groups[GroupOf(bodies, islands, entry)].isDirect; };
+    SetContacts(layout.overflowMoving, overflow.Of(Kind::Moving), isDirect);
+    SetContacts(layout.overflowFixed, overflow.Of(Kind::Fixed), isDirect);
     MakeOverflowJoints(bodies, joints, coloring, layout.overflowJoints);
     ShareRows(layout);
     NoteResting(step, bodies, layout);

@@ -1,5 +1,5 @@
-// Measures the loads of contacts and the position errors of joints in small islands; FindIslands gives islands more
-// substeps based on them. Updated by StoreImpulses.
+// Measures the loads of contacts in small islands, and the gaps of joints with a target: FindIslands has islands solved
+// directly because of them. Updated by StoreImpulses.
 #pragma once
 
 #include <Fulcrum/Constraints/Contacts/ContactBatch.h>
@@ -14,8 +14,8 @@
 
 namespace fulcrum {
 
-// Sinks and gaps are quantized to powers of two of a quarter of their target, AccuracyTarget::penetration and
-// jointError: level i is below 2^i of that.
+// Sinks are quantized to powers of two of a quarter of their target, AccuracyTarget::penetration: level i is below 2^i
+// of that.
 constexpr float kUnnotedFraction = 0.25f;
 inline float LargestUnnoted(float target) { return kUnnotedFraction * target; }
 // Upper bound of the ratio to the target for a level.
@@ -25,16 +25,11 @@ inline float ExcessOfLevel(uint32_t level) { return std::ldexp(kUnnotedFraction,
 // the lighter of the two, gives a sink of F / (m w^2), w = 2 pi StiffestFrequency. It is proportional to the square of
 // the substep.
 struct SinkScale {
-    float target;        // AccuracyTarget::penetration
-    float inverseDt;     // 1/s, of the batch's substeps
-    float softness;      // s^2: 1 / w^2 for the system's substeps
-    float loadSoftness;  // s^2: LoadSoftnessOf
-    float depthScale;  // (substep of the system's settings / that of its springs)^2: a depth times this is the system's
-    Vector3 gravity;   // m/s2
-    uint8_t stiffness;     // see LoadLevel
-    uint8_t stepsOfLoad;   // see StepsOfLoad
-    bool forgets;          // levels may decrease: only in few steps, so that efforts do not alternate
-    bool isOfOtherLength;  // the step is longer or shorter than the last one
+    float target;         // AccuracyTarget::penetration
+    float inverseDt;      // 1/s, of the batch's substeps
+    float softness;       // s^2: LoadSoftnessOf
+    uint8_t stepsOfLoad;  // see StepsOfLoad
+    bool forgets;         // levels may decrease: only in few steps, so that solutions do not alternate
 };
 
 // A load must persist for this many steps; shorter ones are impacts, or piles that come to rest.
@@ -52,35 +47,18 @@ inline float LoadSoftnessOf(const StepContext& step) {
     return step.stiffnessDt < kUsual ? SoftnessOf(step.settings, kUsual) : step.softness;
 }
 
-// Levels of joint errors assume that the gap is proportional to the square of the substep; if it is not, the efforts
-// converge in a few rounds.
+// AccuracyTarget::jointError.
 struct GapScale {
-    float target;          // m: AccuracyTarget::jointError
-    float drift;           // m/s in the batch's substeps, see DriftIn; infinite: nobody asks
-    float impulseScale;    // substep of the batch / that of the system's settings
-    uint8_t stiffness;     // see LoadLevel
-    uint8_t stepsOfLoad;   // as SinkScale::stepsOfLoad
-    bool forgets;          // as SinkScale::forgets
-    bool isOfOtherLength;  // as SinkScale::isOfOtherLength
-
-    // 1/m: a gap in the batch's substeps times this is 1 where the system's leave LargestUnnoted.
-    float PerLevel(float itsTarget) const { return 1 / (LargestUnnoted(itsTarget) * impulseScale * impulseScale); }
+    float target;         // m
+    uint8_t stepsOfLoad;  // see StepsOfLoad
 };
 
-// Speeds that rows leave fall with the substep, its square root of what sinks do: AccuracyTarget::drift, m/s, in
-// substeps that are `impulseScale` times the system's.
-inline float DriftIn(const AccuracyTarget& accuracy, float impulseScale) { return accuracy.drift * impulseScale; }
-
-// Whether islands get more effort by what they carry, and by the gaps of their joints.
-inline bool AdaptsToDrift(const SystemSettings& settings) {
-    return settings.accuracy.drift < std::numeric_limits<float>::infinity();
-}
+// Whether islands are solved directly by what they carry, and by the gaps of their joints.
 inline bool AdaptsToLoads(const SystemSettings& settings, const BodyStore& bodies) {
     return settings.accuracy.penetration < std::numeric_limits<float>::infinity() || bodies.targetCount > 0;
 }
 inline bool AdaptsToGaps(const SystemSettings& settings, const JointStore& joints) {
-    return settings.accuracy.jointError < std::numeric_limits<float>::infinity() || joints.targetCount > 0 ||
-           AdaptsToDrift(settings);
+    return settings.accuracy.jointError < std::numeric_limits<float>::infinity() || joints.targetCount > 0;
 }
 
 // AccuracyTarget::penetration of two bodies, or what they have in its place.
@@ -101,23 +79,14 @@ inline float SquaredSizeOf(const BodyDynamics& body) {
 }
 inline float SizeOf(const BodyDynamics& body) { return std::sqrt(SquaredSizeOf(body)); }
 
-// Whether a body that lies on one of an eighth of its mass or less is a load, however little that sinks: springs as
-// stiff as they can be would hardly damp it, so its island gets softer ones (Effort.h: kLoadedSubstep). A load of kCalm
-// weights comes to rest all the same; where it would sink by the target, heavier ones get more effort anyway.
-constexpr float kHeavy = 8, kCalm = 24;
-inline bool IsLoad(const BodyDynamics& heavier, const BodyDynamics& lighter, float target, const StepContext& step) {
-    return lighter.inverseMass > kHeavy * heavier.inverseMass && heavier.inverseMass > 0 &&
-           kCalm * Length(step.settings.gravity) * step.softness <= target * SizeOf(lighter);
-}
-
 // Initializes the levels of new contacts from the weights that they carry, in a structure that begins at rest those of
 // all bodies above: their impulses take many steps to build up, the more the lighter the lower body is. began: pairs.
 // Called by BuildIslands.
 void NoteWeights(const StepContext& step, std::span<const uint32_t> began, const BodyStore& bodies,
                  const JointStore& joints, PairStore& pairs, ScratchArena& scratch);
 
-// Raises the levels of all contacts to what their forces of the last step require in a longer one: it would begin with
-// springs that are too soft, and stacks would fall by several sinks. Called by BuildIslands.
+// The same by the forces of the last step, where the step is longer: its softer springs would let stacks fall by
+// several sinks. Called by BuildIslands.
 void NoteForces(const StepContext& step, const ConstraintColoring& coloring, const BodyStore& bodies,
                 const JointStore& joints, PairStore& pairs);
 
@@ -127,11 +96,11 @@ template <int N, bool kFixedB>
 bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, const BodyStore& bodies,
                const JointStore& joints, PairStore& pairs);
 
-// Updates the levels of a batch's joints from their position errors at the start of the step and the speeds of their
-// anchors at its end. Returns whether any level changed.
+// Marks the joints of a batch whose gap has exceeded its target for some steps (Joint::isBeyondTarget). Returns whether
+// there is a new one.
 template <int N>
-bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, const BodyStore& bodies, JointStore& joints);
+bool NoteGaps(const JointBatch<N>& batch, const GapScale& scale, JointStore& joints);
 template <int N>
-bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, const BodyStore& bodies, JointStore& joints);
+bool NoteGaps(const BallBatch<N>& batch, const GapScale& scale, JointStore& joints);
 
 }  // namespace fulcrum

@@ -17,11 +17,13 @@ namespace fulcrum {
 // longer.
 inline constexpr uint8_t kMostMisses = 12;
 
-// Whether a body's contacts may be: not those of bodies created inside each other, of those with locked axes, which
-// gained energy, and, until they fall asleep, of those of which solutions took long.
-inline bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body) {
-    const BodyDynamics& d = bodies.dynamics[body];
-    return !d.crowded && d.lockedAxes == LockedAxes::None && bodies.cold[body].directMisses < kMostMisses;
+// So few contacts are solved however long it takes.
+inline constexpr size_t kFewContacts = 3;
+
+// Whether the contacts of a body in an island of so many may be: not those of bodies created inside each other, and,
+// until they fall asleep, of those of which solutions took long.
+inline bool MayBeSolvedDirectly(const BodyStore& bodies, uint32_t body, size_t contacts) {
+    return !bodies.dynamics[body].crowded && (contacts <= kFewContacts || bodies.cold[body].directMisses < kMostMisses);
 }
 // The same of a contact with another body: not with masses of its own, nor with kinematic bodies, which press with any
 // force and wedge what is in their way.
@@ -37,6 +39,7 @@ public:
                    double h, double give, ScratchArena& scratch);
 
     bool AreAny() const { return !contacts_.empty(); }
+    size_t Count() const { return contacts_.size(); }
     size_t MostRows() const { return contacts_.size() * (ContactRecord::kMaxPoints + 3); }
     std::span<const DirectPatch> Patches() const { return patches_.first(patchCount_); }
     // See MayBeSolvedDirectly.

@@ -393,11 +393,12 @@ bool DirectIsland::SolveJoints(From from, ScratchArena& scratch) {
 }
 
 bool DirectIsland::MaySolveContacts(const PairStore& pairs) const {
-    const auto mayBe = [&](uint32_t body) { return MayBeSolvedDirectly(bodies_, body); };
+    const auto mayBe = [&](uint32_t body) { return MayBeSolvedDirectly(bodies_, body, contacts_.Count()); };
     return contacts_.MayBeSolvedDirectly(pairs) && std::ranges::all_of(layout_.BodiesOf(group_), mayBe);
 }
 
 bool DirectIsland::NoteMisses() {
+    if (contacts_.Count() <= kFewContacts) factorizations_ = 0;
     const uint32_t times = factorizations_ / (kMostFactorizations * std::max(solutions_, kLeastSubsteps));
     bool areMany = false;
     for (const uint32_t body : layout_.BodiesOf(group_)) {
@@ -406,7 +407,7 @@ bool DirectIsland::NoteMisses() {
         if (times > 0) misses = static_cast<uint8_t>(std::min<uint32_t>(misses + times, kMostMisses));
         else if (misses > 0) --misses;
         cold.wasDirect = true;
-        areMany |= misses == kMostMisses;
+        areMany |= misses == kMostMisses && contacts_.Count() > kFewContacts;
     }
     if (areMany) contacts_.ForgetImpulses();
     return areMany;

@@ -1,5 +1,5 @@
-// The solver settings of a group of islands: the system's, or more effort if its joints or loads ask for it. Used by
-// Prepare, Solve, Store.
+// The solver settings of a group of islands: the system's, or more effort if its joints ask for it, or it is a wall.
+// Used by Prepare, Solve, Store.
 #pragma once
 
 #include <Fulcrum/Physics/Stages/SolverLayout.h>
@@ -41,26 +41,6 @@ inline float LeastDampingRatio(float frequency, float h) {
     return std::min(0.5f * (w / kMostPushRate - h * w), kMost);
 }
 
-// The stiffest springs hardly damp slow modes (Docs/Step.md). The springs of islands under load are half as stiff:
-// those of substeps longer by this factor.
-inline constexpr float kLoadedSubstep = 1.41421356f;
-// SolverGroup::stiffness counts powers of this factor, from kLoadedSubstep times the system's substep.
-inline constexpr float kStiffnessStep = 0.957603281f;  // 2^(-1/16)
-inline constexpr uint8_t kUsualStiffness = 9;          // of the system's substep
-inline float SubstepOfStiffness(uint32_t stiffness) {
-    float part = kLoadedSubstep;
-    for (uint32_t i = 1; i < stiffness; ++i) part *= kStiffnessStep;
-    return part;
-}
-// The stiffness of a group with springs of substeps `longer` times its own.
-inline uint8_t StiffnessOf(int substeps, int systemSubsteps, float longer) {
-    const float part = longer * static_cast<float>(systemSubsteps) / static_cast<float>(substeps);
-    constexpr float kRounding = 1.0001f;
-    uint8_t stiffness = 1;
-    for (float substep = kLoadedSubstep; substep > kRounding * part; substep *= kStiffnessStep) ++stiffness;
-    return stiffness;
-}
-
 // ContactSolveSettings::mostError for steps of dt seconds: 0.3 inner radii of the smaller body per second; in steps
 // longer than 1/60 s an error that deepens an overlap by as much in a step. inverseSoftDepth is in quarters of the
 // radius.
@@ -68,18 +48,12 @@ inline float MostVelocityError(float dt) { return 0.02f / std::max(dt, 1.0f / 60
 // ContactSolveSettings::hitError for substeps of h seconds: what deepens an overlap by a tenth of the radius in one.
 inline float HitError(float h) { return 0.4f / h; }
 
-// Loads and stiffness change over so many steps of 1/60 s, or longer steps, or over the same time in shorter ones: a
-// load that bounces on its springs would be pumped by springs that stiffen while it rises.
+// Loads are judged over so many steps of 1/60 s, or longer steps, or over the same time in shorter ones.
 inline uint32_t StepsFor(uint32_t steps, const StepContext& step) {
     constexpr float kMost = 255;
     const float dt = step.stiffnessDt * static_cast<float>(step.settings.solver.substeps);
     return static_cast<uint32_t>(
         std::clamp(static_cast<float>(steps) / (60 * dt) + 0.5f, static_cast<float>(steps), kMost));
-}
-
-// The part of the system's substep whose springs a group has. impulseScale: see Effort.
-inline float SpringsOf(const SolverGroup& group, float impulseScale) {
-    return group.stiffness > 0 ? std::max(impulseScale, SubstepOfStiffness(group.stiffness)) : impulseScale;
 }
 
 // s. In shorter substeps the rounding of velocities in floats counts.
@@ -104,7 +78,7 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     // integrated twice. By the settings alone: islands with more effort of their own are piles, which lose by it.
     effort.startsAnew = group.hasJoints || step.dt < kShortSubstep * static_cast<float>(s.solver.substeps);
     effort.impulseScale = h / step.substepDt;
-    const float stiffest = StiffestFrequency(effort.solver, step.stiffnessDt * SpringsOf(group, effort.impulseScale));
+    const float stiffest = StiffestFrequency(effort.solver, step.stiffnessDt * effort.impulseScale);
 
     ContactSolveSettings& contacts = effort.contacts;
     contacts.inverseDt = 1.0f / h;
@@ -125,7 +99,6 @@ inline Effort EffortOf(const StepContext& step, const SolverGroup& group) {
     joints.impulseScale = step.impulseScale * effort.impulseScale;
     const bool corrects = s.solver.positionCorrection == PositionCorrection::Baumgarte;
     contacts.relaxes = !corrects && effort.solver.positionIterations > 0;
-    // Half of what the system's settings ask for: those added for gaps push joints, to which friction would react.
     effort.impactIterations = contacts.relaxes ? s.solver.velocityIterations / 2 : 0;
     contacts.baumgarte = joints.baumgarte = s.solver.baumgarte;
     contacts.mostCorrection = s.contactPushSpeed * h;

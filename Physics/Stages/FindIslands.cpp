@@ -24,22 +24,6 @@ using Kind = ConstraintColoring::Kind;
 constexpr DirectCost kMostCost = {10000, 6.5};
 constexpr uint32_t kMostBodies = 1024;
 
-// Slower than after a fall of so long.
-constexpr float kCalmSeconds = 0.13f;
-
-// usual: the system's substeps.
-void SetEffort(SolverGroup& group, const IslandEffort& effort, int usual) {
-    group.effort = effort.least;
-    if (!effort.isLoaded || group.effort.substeps < usual) return;
-    group.wantedStiffness = StiffnessOf(group.effort.substeps, usual, effort.longer);
-    group.stiffness = effort.stiffness == 0 ? group.wantedStiffness : std::min(effort.stiffness, group.wantedStiffness);
-}
-void SetEffort(SolverGroup& group, const SavedEffort& saved) {
-    group.effort = saved.effort;
-    group.stiffness = saved.stiffness;
-    group.wantedStiffness = saved.wantedStiffness;
-}
-
 // Of small islands: by root, what was saved of them, or null.
 std::span<const SavedEffort*> SavedOf(const Array<SavedEffort>& saved, const BodyStore& bodies, UnionFind& sets,
                                       ScratchArena& scratch) {
@@ -56,7 +40,7 @@ std::span<const IslandEffort> EffortsOf(std::span<const SavedEffort* const> save
         if (!saved[i]) continue;
         efforts[i].least = saved[i]->effort;
         efforts[i].culprit = saved[i]->culprit;
-        efforts[i].isHard = saved[i]->isLoaded;
+        efforts[i].isHard = saved[i]->isLoaded || saved[i]->isWaiting;
     }
     return efforts;
 }
@@ -73,8 +57,7 @@ public:
         const auto end = open_.begin() + count_;
         auto to = std::find_if(open_.begin(), end, [&](const Open& open) {
             const SolverGroup& group = groups_[open.group];
-            return group.hasJoints == own.hasJoints && group.effort == own.effort && group.stiffness == own.stiffness &&
-                   group.wantedStiffness == own.wantedStiffness;
+            return group.hasJoints == own.hasJoints && group.effort == own.effort;
         });
         if (to == end || to->constraints >= kSmallGroup) {
             if (to == end) ++count_;
@@ -103,6 +86,7 @@ struct IslandTraits {
     bool isIterated : 1 = false;     // contacts may not be solved directly
     bool isLoaded : 1 = false;       // they are, because of loads
     bool isMoving : 1 = false;       // some body does
+    bool isWaiting : 1 = false;      // they will be once no body does
     bool wasDirect : 1 = false;      // some body was solved directly since it woke
     bool isHard : 1 = false;         // some are solved directly, where that costs little
 };
@@ -195,11 +179,6 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     VisitEntries(coloring, Kind::Joint, unite);
     const std::span<IslandTraits> traits = scratch.Allocate<IslandTraits>(count);
     std::ranges::fill(traits, IslandTraits{});
-    for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t body = bodies.awake[i];
-        if (MayBeSolvedDirectly(bodies, body)) continue;
-        traits[sets.Find(i)].isIterated = true;
-    }
     for (Kind kind : {Kind::Moving, Kind::Fixed, Kind::Joint})
         VisitEntries(coloring, kind, [&](uint32_t c, const Entry& entry) {
             const uint32_t root = sets.Find(placeOf(MovingBodyOf(entry)));
@@ -214,16 +193,18 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
             const uint32_t other = entry.fixedA ? entry.bodyA : entry.bodyB;
             its.isIterated |= !MayBeSolvedDirectly(bodies, pairs, entry.constraint, other);
         });
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t root = sets.Find(i);
+        if (!MayBeSolvedDirectly(bodies, bodies.awake[i], sizes[root])) traits[root].isIterated = true;
+    }
     bool jointsOverflow = false;  // constraints without a color are solved with the first group
     if (coloring.HasOverflow())
         for (const IslandTraits& its : traits) jointsOverflow |= its.overflows && its.hasJoints;
-    const int usual = step.settings.solver.substeps;
     const std::span<const SavedEffort* const> savedOf =
         saved ? SavedOf(*saved, bodies, sets, scratch) : std::span<const SavedEffort*>();
     const std::span<const IslandEffort> efforts =
         saved ? EffortsOf(savedOf, scratch)
-              : FindEfforts(step, bodies, coloring, joints, pairs, sizes,
-                            step.settings.accuracy.largeIslands ? ~0u : kLargeIsland - 1, sets, scratch);
+              : FindEfforts(step, bodies, coloring, joints, pairs, sizes, kLargeIsland - 1, sets, scratch);
     Islands result;
     result.groupOf = scratch.Allocate<uint32_t>(count);
     result.rootOf = scratch.Allocate<uint32_t>(count);
@@ -236,24 +217,27 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         if (!its.hasContacts) its.hasHardJoints = true;
     }
     // What falls or is thrown is no load yet, and its impacts take long: it begins where all are calm, and stays.
-    const float calm = kCalmSeconds * std::max(Length(step.settings.gravity), 1.0f);
+    const float calm = CalmSpeed(step.settings);
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t root = result.rootOf[i], body = bodies.awake[i];
         if (!efforts[root].isHard) continue;
-        if (bodies.cold[body].wasDirect) traits[root].wasDirect = true;
-        if (!(Length(bodies.LinearVelocityOf(body)) < calm)) traits[root].isMoving = true;
+        if (bodies.cold[body].wasDirect || (saved && savedOf[root]->isLoaded)) traits[root].wasDirect = true;
+        if (sizes[root] > kFewContacts && !(Length(bodies.LinearVelocityOf(body)) < calm)) traits[root].isMoving = true;
     }
     bool areAnyHard = false;
     for (uint32_t i = 0; i < count; ++i) {
         IslandTraits& its = traits[i];
-        its.isLoaded = efforts[i].isHard && !its.isIterated && !its.hasJoints && (its.wasDirect || !its.isMoving);
-        its.isHard = (its.isLoaded || its.hasHardJoints) && !its.overflows;
+        const bool mayBeLoaded = efforts[i].isHard && !its.isIterated && !its.hasJoints;
+        its.isLoaded = mayBeLoaded && (its.wasDirect || !its.isMoving);
+        its.isWaiting = mayBeLoaded && !its.isLoaded;
+        its.isHard = its.isLoaded || (its.hasHardJoints && !its.overflows);
         areAnyHard |= its.isHard;
     }
     std::optional<PatternFinder> patterns;
     if (areAnyHard) patterns.emplace(bodies, coloring, result.rootOf, traits, layout.patternWords, scratch);
     groups.assign(1, {.isLarge = true, .hasJoints = jointsOverflow});
     layout.efforts.clear();
+    layout.waiting.clear();
     const auto hasEffort = [](const IslandEffort& effort) { return effort.least.IsAny() || effort.isHard; };
     const size_t ownEfforts = static_cast<size_t>(std::ranges::count_if(efforts, hasEffort));
     // By root, into layout.efforts.
@@ -281,14 +265,13 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
             if (own.isLoaded) effort.least = {};
         }
         const bool differs = large && its.hasJoints != jointsOverflow;  // from the first group
-        if (large && (its.overflows || !(effort.least.IsAny() || own.isDirect || differs))) {
+        if (large && !own.isDirect && (its.overflows || !(effort.least.IsAny() || differs))) {
             result.groupOf[i] = Islands::kLargeGroup;
             if (its.overflows && effort.least.IsAny()) Raise(overflowing, effort);
             continue;
         }
         own.hasJoints = its.hasJoints || own.isDirect;
-        if (saved && savedOf[i]) SetEffort(own, *savedOf[i]);
-        else SetEffort(own, effort, usual);
+        own.effort = effort.least;
         // A group that is not large is solved by one worker: too slow for a large island, unless required.
         own.isLarge = large && !own.isDirect;
         if (own.isLarge || own.isDirect) {
@@ -297,15 +280,16 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         } else {
             result.groupOf[i] = open.Add(own, sizes[i]);
         }
-        if (!effort.least.IsAny() && !own.isLoaded) continue;
+        if (!effort.least.IsAny() && !own.isLoaded && !its.isWaiting) continue;
         effortOf[i] = static_cast<uint32_t>(layout.efforts.size());
-        layout.efforts.push_back({.culprit = effort.culprit, .group = result.groupOf[i]});
+        layout.efforts.push_back({.culprit = effort.culprit, .group = result.groupOf[i], .isWaiting = its.isWaiting});
     }
     for (uint32_t i = 0; i < effortOf.size(); ++i) {
         if (effortOf[result.rootOf[i]] == Islands::kNone) continue;
         IslandWithEffort& island = layout.efforts[effortOf[result.rootOf[i]]];
         island.body = std::min(island.body, bodies.awake[i]);
         ++island.bodies;
+        if (island.isWaiting) layout.waiting.push_back({effortOf[result.rootOf[i]], bodies.awake[i]});
     }
     SolverGroup& first = groups[Islands::kLargeGroup];
     const auto ofAll = [&](uint32_t culprit) {
@@ -315,13 +299,13 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
                                   .group = Islands::kLargeGroup});
     };
     if (overflowing.least.IsAny()) {
-        SetEffort(first, overflowing, usual);
+        first.effort = overflowing.least;
         ofAll(overflowing.culprit);
     }
     if (saved)
         for (const SavedEffort& effort : *saved) {
             if (effort.body != ~0u) continue;
-            SetEffort(first, effort);
+            first.effort = effort.effort;
             ofAll(effort.culprit);
         }
     result.groups = static_cast<uint32_t>(groups.size());

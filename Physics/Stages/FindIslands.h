@@ -10,6 +10,7 @@
 #include <Fulcrum/Physics/World/JointStore.h>
 #include <Fulcrum/Physics/World/PairStore.h>
 
+#include <algorithm>
 #include <span>
 
 namespace fulcrum {
@@ -28,6 +29,9 @@ struct Islands {
 Islands FindIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                     const JointStore& joints, const PairStore& pairs, const Array<SavedEffort>* saved,
                     SolverLayout& layout, ScratchArena& scratch);
+
+// m/s: after a fall of 0.13 s. What falls or is thrown is no load yet, and its impacts take long.
+inline float CalmSpeed(const SystemSettings& settings) { return 0.13f * std::max(Length(settings.gravity), 1.0f); }
 
 // Calls visit(color, entry) for all constraints of a kind, those without a color last.
 template <class Visit>

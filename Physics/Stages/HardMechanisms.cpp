@@ -77,7 +77,7 @@ private:
     // Visits all bodies that joints connect to this one.
     void Add(uint32_t first) {
         const size_t begin = queued_;
-        bool isStrained = false, isPastLimit = false, isIterated = false;
+        bool isStrained = false, isPastLimit = false, isBeyondTarget = false, isIterated = false;
         bool isLever = true;            // all joints pass torque on
         bool isDriven = false;          // by a motor, at a stop
         size_t links = 0, anchors = 0;  // joints with other bodies, each counted twice, and with immovable ones
@@ -103,6 +103,7 @@ private:
             const bool isFixed = joint.fixed[1 - side];
             isStrained |= joint.isStrained;
             isPastLimit |= joint.wasPastLimit;
+            isBeyondTarget |= joint.isBeyondTarget;
             isLever &= joint.type->Locks().angular != AngularLock::None;
             isIterated |= joint.overridesMass || joint.priority != JointPriority::Normal || IsHeld(body);
             ++(isFixed ? anchors : links);
@@ -118,6 +119,7 @@ private:
         const bool hasLoop = links / 2 + anchors > count - 1 + (anchors > 0);
         if (hasLoop || isPastLimit) found_.contradicting.push_back(first);
         if (hasLoop) return;
+        if (isBeyondTarget) return found_.open.push_back(first);
         // Bodies that act as one long lever: an iteration resolves little of it. Ball joints would divide it.
         if (isStrained && isLever && count > kLeastLever) return found_.open.push_back(first);
         // A motor takes any impulse that its speed needs, and iterations pass it on to the other joints one by one:

@@ -1,8 +1,8 @@
 // Finds the mechanisms whose joints iterations resolve poorly, which are solved directly (Constraints/Direct) where
 // that costs little: those that carry much more than their own bodies' mass, those with closed loops, those of which
-// a motor with a target speed drives a joint at its stops, and those with a joint that has been strained or past its
-// limits (JointStrain.h). Called by the BuildIslands stage if joints were added or removed, got such a motor, or began
-// to be so. Serial; the result depends only on the joints.
+// a motor with a target speed drives a joint at its stops, and those with a joint that has been strained, past its
+// limits (JointStrain.h) or beyond its target (ContactLoads.h). Called by the BuildIslands stage if joints were added
+// or removed, got such a motor, or began to be so. Serial; the result depends only on the joints.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>

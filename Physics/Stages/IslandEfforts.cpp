@@ -52,8 +52,6 @@ struct Extent {
 // allowed product is this constant times the target's penetration times a^2: a quarter of the critical one at the
 // default 0.004.
 constexpr float kBuckling = 12;
-// Likewise for islands that are no columns: neighbors support each other.
-constexpr float kBucklingOfWalls = 20;
 // A column is at least this many times as high as half its width: its base carries all of it.
 constexpr float kSlender = 8;
 // Large islands, where more effort costs time for all bodies, get more only for walls: those so much higher than thick
@@ -62,44 +60,34 @@ constexpr float kSlender = 8;
 constexpr float kBucklingOfLarge = 110;
 // Large islands get the effort at which a load of so many weights sinks a body by the allowed penetration.
 constexpr float kWeights = 2;
-// Islands for which so many passes over their rows in a step suffice get these, those of four substeps: a direct
-// solution of one takes as long as 60, of many islands together in full lanes.
+// Single contacts for which so many passes over their rows in a step suffice get these, those of four substeps: a
+// direct solution of one takes as long as 60, of many islands together in full lanes.
 constexpr int kFewPasses = 8;
 // Minimum number of constraints of an island that may buckle.
 constexpr uint32_t kLeastHigh = 4;
+constexpr int kMostSubsteps = std::numeric_limits<uint8_t>::max();  // LeastEffort has no more
 
 struct Need {
-    // Ratio of the sink of an island's contacts, or of the gap of its joints, to its target, with the system's
-    // settings.
+    // Ratio of the sink of an island's contacts to its target, in the substeps of LoadSoftnessOf.
     float need = 0;
-    uint32_t culprit = ~0u;  // the body with that contact or joint
-    uint8_t stiffness = 0;   // minimum over the loaded contacts of the last step; 0: none
-    bool isStiff = false;    // whether it needs the stiffest springs, as gaps of joints do
-    bool isLoaded = false;   // whether a body lies on a much lighter one, see IsLoad
+    uint32_t culprit = ~0u;  // the body with that contact
 
     void Raise(float to, uint32_t body) {
         if (!(need < to)) return;
         need = to;
         culprit = body;
     }
-    void Load(uint32_t body) {
-        isLoaded = true;
-        if (culprit == ~0u) culprit = body;
-    }
-    void Soften(uint8_t to) { stiffness = stiffness == 0 ? to : std::min(stiffness, to); }
 };
 
 class LoadEfforts {
 public:
     LoadEfforts(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
-                const JointStore& joints, const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded,
-                UnionFind& sets, std::span<Need> needs, ScratchArena& scratch)
-        : step_(step),
-          settings_(step.settings),
+                const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded, UnionFind& sets,
+                std::span<Need> needs, ScratchArena& scratch)
+        : settings_(step.settings),
           softness_(LoadSoftnessOf(step)),
           bodies_(bodies),
           coloring_(coloring),
-          joints_(joints),
           pairs_(pairs),
           sizes_(sizes),
           mostLoaded_(mostLoaded),
@@ -120,7 +108,6 @@ public:
         for (uint32_t i = 0; i < places_.size(); ++i)
             if (places_[i] != kNone) AddNeedOfColumn(i, extents_[places_[i]]);
         AddNeedsOfLarge();
-        FindLoads();
     }
 
 private:
@@ -171,10 +158,6 @@ private:
         for (uint32_t i = 0; i < bodies_.awake.size(); ++i) {
             const BodyDynamics& body = bodies_.dynamics[bodies_.awake[i]];
             const float least = weights / TargetOf(bodies_.awake[i]), size = SquaredSizeOf(body);
-            // Those that may be loaded (IsLoad), and the heaviest.
-            constexpr float kSquared = (kCalm / kWeights) * (kCalm / kWeights);
-            if (size >= kSquared * least * least) lightest_ = std::max(lightest_, body.inverseMass);
-            if (body.inverseMass > 0) heaviest_ = std::min(heaviest_, body.inverseMass);
             if (!(size < least * least)) continue;
             const uint32_t root = sets_.Find(i);
             if (sizes_[root] > mostLoaded_) needs_[root].Raise(least / SizeOf(body), bodies_.awake[i]);
@@ -197,26 +180,6 @@ private:
                            extent.lightest);
     }
 
-    // Marks the islands where a heavy body lies on a light one.
-    void FindLoads() {
-        if (!(lightest_ > kHeavy * heaviest_)) return;
-        const Vector3 g = step_.settings.gravity;
-        VisitEntries(coloring_, Kind::Moving, [&](uint32_t, const Entry& entry) {
-            if (entry.fixedA || entry.fixedB) return;
-            const BodyDynamics &a = bodies_.dynamics[entry.bodyA], &b = bodies_.dynamics[entry.bodyB];
-            const bool isALighter = a.inverseMass > b.inverseMass;
-            const BodyDynamics &lighter = isALighter ? a : b, &heavier = isALighter ? b : a;
-            const uint32_t light = isALighter ? entry.bodyA : entry.bodyB,
-                           heavy = isALighter ? entry.bodyB : entry.bodyA;
-            if (!IsLoad(heavier, lighter, TargetOf(light), step_)) return;
-            const uint32_t root = RootOf(light);
-            if (sizes_[root] > mostLoaded_ || joints_.HasAny(light) || joints_.HasAny(heavy)) return;
-            const Position rise = bodies_.CenterOf(heavy) - bodies_.CenterOf(light);
-            if (rise.x() * double{g.x()} + rise.y() * double{g.y()} + rise.z() * double{g.z()} < 0)
-                needs_[root].Load(light);
-        });
-    }
-
     // The lighter one of the dynamic bodies of a contact.
     uint32_t LighterOf(const Entry& entry) const {
         const auto inverseMassOf = [&](uint32_t body) { return bodies_.dynamics[body].inverseMass; };
@@ -226,27 +189,21 @@ private:
 
     void AddNeed(const Entry& entry) {
         const LoadLevel& load = pairs_.loads[pairs_.contacts[entry.constraint].pair];
-        if (load.level == 0 && load.recent == 0) return;
+        if (load.level == 0) return;
         const uint32_t root = RootOf(MovingBodyOf(entry));
         if (sizes_[root] > mostLoaded_) return;
         float size = std::numeric_limits<float>::infinity();
         if (!entry.fixedA) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyA]));
         if (!entry.fixedB) size = std::min(size, SizeOf(bodies_.dynamics[entry.bodyB]));
         const Extent& extent = places_[root] == kNone ? kLow : extents_[places_[root]];
-        const float factor = BucklingFactor(size, extent, kBucklingOfWalls);
-        const auto needOf = [&](uint32_t level) { return ExcessOfLevel(level) * factor; };
-        Need& most = needs_[root];
-        if (load.level > 0) most.Raise(needOf(load.level), LighterOf(entry));
-        // A contact under high load in the last step, even by an impact, was solved with the last stiffness.
-        if (load.stiffness > 0 && needOf(std::max(load.level, load.recent)) > 1) most.Soften(load.stiffness);
+        const float factor = BucklingFactor(size, extent, kBuckling);
+        needs_[root].Raise(ExcessOfLevel(load.level) * factor, LighterOf(entry));
     }
 
-    const StepContext& step_;
     const SystemSettings& settings_;
     float softness_;
     const BodyStore& bodies_;
     const ConstraintColoring& coloring_;
-    const JointStore& joints_;
     const PairStore& pairs_;
     std::span<const uint32_t> sizes_;
     uint32_t mostLoaded_;
@@ -255,45 +212,29 @@ private:
     static constexpr Extent kLow{};
     std::span<uint32_t> places_;  // by root, index in extents_; kNone: only its loads count
     std::span<Extent> extents_;
-    std::span<Need> needs_;                                                   // by root
-    float lightest_ = 0, heaviest_ = std::numeric_limits<float>::infinity();  // 1/kg, see AddNeedsOfLarge
+    std::span<Need> needs_;  // by root
 };
 
 // The effort at which contacts sink `need` times less than with the system's settings: substeps, with whose square
-// sinks fall. Not iterations: loads rattle on light legs with two relax iterations and more, and a step of N substeps
-// of one iteration costs less than any other that is as stiff. Gaps of joints get iterations beyond 64 substeps. In
-// powers of two, so that efforts seldom change. Leaves the part of the need that is not met: at most 1 if all of it is.
-SolverSettings EffortFor(float& need, bool hasGaps, const SystemSettings& settings) {
-    constexpr int kMostForGaps = 64, kMostIterations = 4;
-    const int most = hasGaps ? std::min(settings.accuracy.mostSubsteps, kMostForGaps) : settings.accuracy.mostSubsteps;
-    const int mostSubsteps = std::max(most, settings.solver.substeps);
-    SolverSettings effort = settings.solver;
-    for (float factor = 1; need > 1 && effort.substeps < mostSubsteps; need *= 0.5f) {
+// sinks fall, in steps of the root of two, so that efforts seldom change.
+LeastEffort EffortFor(float need, const SolverSettings& solver) {
+    int substeps = solver.substeps;
+    for (float factor = 1; need > 1 && substeps < kMostSubsteps; need *= 0.5f) {
         factor *= 1.41421356f;
-        const int substeps = static_cast<int>(std::ceil(factor * static_cast<float>(settings.solver.substeps) - 0.01f));
-        effort.substeps = std::min(substeps, mostSubsteps);
+        substeps = static_cast<int>(std::ceil(factor * static_cast<float>(solver.substeps) - 0.01f));
     }
-    for (; hasGaps && need > 1 && effort.velocityIterations < kMostIterations; need *= 0.5f) {
-        effort.velocityIterations *= 2;
-        effort.positionIterations = std::max(effort.positionIterations, effort.velocityIterations);
-    }
+    LeastEffort effort = ToLeastEffort(solver);
+    effort.substeps = static_cast<uint8_t>(std::min(substeps, kMostSubsteps));
     return effort;
 }
 
-int PassesOf(const SolverSettings& effort) {
+int PassesOf(const LeastEffort& effort) {
     return effort.substeps * (effort.velocityIterations + effort.positionIterations);
 }
 
 }  // namespace
 
-void Raise(IslandEffort& effort, const IslandEffort& to) {
-    RaiseLeast(effort, to.least, to.culprit);
-    if (!to.isLoaded) return;
-    if (!effort.isLoaded || (to.stiffness > 0 && (effort.stiffness == 0 || to.stiffness < effort.stiffness)))
-        effort.stiffness = to.stiffness;
-    effort.longer = effort.isLoaded ? std::min(effort.longer, to.longer) : to.longer;
-    effort.isLoaded = true;
-}
+void Raise(IslandEffort& effort, const IslandEffort& to) { RaiseLeast(effort, to.least, to.culprit); }
 
 std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodyStore& bodies,
                                           const ConstraintColoring& coloring, const JointStore& joints,
@@ -302,42 +243,28 @@ std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodySto
     const size_t count = bodies.awake.size();
     std::span<IslandEffort> efforts = scratch.Allocate<IslandEffort>(count);
     std::fill(efforts.begin(), efforts.end(), IslandEffort{});
+    VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
+        const LeastEffort& asked = joints.joints[entry.constraint].effort;
+        if (!asked.IsAny()) return;
+        const uint32_t body = MovingBodyOf(entry);
+        RaiseLeast(efforts[sets.Find(bodies.cold[body].awakePlace)], asked, body);
+    });
+    if (!AdaptsToLoads(step.settings, bodies)) return efforts;
     std::span<Need> needs = scratch.Allocate<Need>(count);
     std::fill(needs.begin(), needs.end(), Need{});
-    const bool adaptsToGaps = AdaptsToGaps(step.settings, joints);
-    VisitEntries(coloring, Kind::Joint, [&](uint32_t, const Entry& entry) {
-        const Joint& joint = joints.joints[entry.constraint];
-        if (!joint.effort.IsAny() && !adaptsToGaps) return;
-        const uint32_t body = MovingBodyOf(entry), root = sets.Find(bodies.cold[body].awakePlace);
-        if (joint.effort.IsAny()) RaiseLeast(efforts[root], joint.effort, body);
-        const LoadLevel& gap = joints.gaps[entry.constraint].load;
-        if (!adaptsToGaps || gap.level == 0 || sizes[root] > mostLoaded) return;
-        const float need = ExcessOfLevel(gap.level);
-        needs[root].Raise(need, body);
-        needs[root].isStiff = true;
-        if (gap.stiffness > 0 && need > 1) needs[root].Soften(gap.stiffness);
-    });
-    if (AdaptsToLoads(step.settings, bodies))
-        LoadEfforts(step, bodies, coloring, joints, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
-    else if (!adaptsToGaps) return efforts;
-    // Of loads, with the settings' own substeps.
-    const float ofSubsteps = step.softness / LoadSoftnessOf(step);
+    LoadEfforts(step, bodies, coloring, pairs, sizes, mostLoaded, sets, needs, scratch).Find();
+    const float ofSubsteps = step.softness / LoadSoftnessOf(step);  // of a need: with the settings' own
     for (size_t i = 0; i < count; ++i) {
-        efforts[i].isHard = needs[i].need > 1 && !needs[i].isStiff;
-        if (efforts[i].isHard && efforts[i].culprit == ~0u) efforts[i].culprit = needs[i].culprit;
-        if (!needs[i].isStiff) needs[i].need *= ofSubsteps;
-        if (!(needs[i].need > 1) && !needs[i].isLoaded) continue;
-        // Islands under load get springs half as stiff as the stiffest, unless the maximum effort does not suffice
-        // then. A need is up to twice what the island needs.
-        const float softer = needs[i].isStiff || sizes[i] > mostLoaded ? 1 : kLoadedSubstep * kLoadedSubstep;
-        float need = needs[i].need * softer;
-        const SolverSettings effort = EffortFor(need, needs[i].isStiff, step.settings);
-        if (effort.substeps > step.settings.solver.substeps && sizes[i] < kLeastHigh && PassesOf(effort) <= kFewPasses)
-            efforts[i].isHard = false;
-        efforts[i].longer = std::sqrt(softer / std::clamp(0.5f * need, 1.0f, softer));
-        RaiseLeast(efforts[i], ToLeastEffort(effort), needs[i].culprit);
-        efforts[i].isLoaded = true;
-        efforts[i].stiffness = needs[i].stiffness;
+        const auto [need, culprit] = needs[i];
+        if (!(need > 1)) continue;
+        const LeastEffort effort = EffortFor(need * ofSubsteps, step.settings.solver);
+        const bool isFew = effort.Exceeds(step.settings.solver) && PassesOf(effort) <= kFewPasses;
+        if (sizes[i] > mostLoaded || (sizes[i] == 1 && isFew)) {
+            RaiseLeast(efforts[i], effort, culprit);
+            continue;
+        }
+        efforts[i].isHard = true;
+        if (efforts[i].culprit == ~0u) efforts[i].culprit = culprit;
     }
     return efforts;
 }

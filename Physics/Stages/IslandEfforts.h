@@ -1,4 +1,4 @@
-// Solver efforts of islands that need more than the system's settings. Called by FindIslands.
+// Which islands need more than the system's settings, and how large ones get it. Called by FindIslands.
 #pragma once
 
 #include <Fulcrum/Jobs/ScratchArena.h>
@@ -14,19 +14,16 @@ namespace fulcrum {
 
 struct IslandEffort {
     LeastEffort least;
-    bool isLoaded = false;   // loads of contacts ask for it, or gaps of joints
     bool isHard = false;     // contacts sink by more than they may with the settings' effort
-    uint8_t stiffness = 0;   // with which loaded contacts were solved; 0: they are new
-    float longer = 1;        // its springs are to be those of substeps longer by this, see kLoadedSubstep
     uint32_t culprit = ~0u;  // the body of the joint or contact that asked for most of it
 };
 
-// Component-wise maximum of both efforts; for stiffness the minimum.
+// Component-wise maximum of both efforts.
 void Raise(IslandEffort& effort, const IslandEffort& to);
 
 // Efforts by the root of the island; `sets` is indexed as bodies.awake. Each number is the maximum that joints of the
-// island require, and that the loads of its contacts require if it has at most `mostLoaded` constraints. sizes: number
-// of constraints, by root.
+// island require; large islands, of more than `mostLoaded` constraints, get more that are walls or of small bodies.
+// sizes: number of constraints, by root.
 std::span<const IslandEffort> FindEfforts(const StepContext& step, const BodyStore& bodies,
                                           const ConstraintColoring& coloring, const JointStore& joints,
                                           const PairStore& pairs, std::span<const uint32_t> sizes, uint32_t mostLoaded,

@@ -221,7 +221,7 @@ void Prepare(const StepContext& step, const BodyStore& bodies, const ConstraintC
 
     FindDeepest(bodies, pairs, workers.findings, report);
     report.colors = layout.colorCount;
-    report.overflowConstraints = static_cast<uint32_t>(layout.OverflowCount());
+    report.overflowConstraints = layout.uncolored;
 }
 
 }  // namespace fulcrum

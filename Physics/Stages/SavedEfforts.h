@@ -16,21 +16,13 @@ struct SavedEffort {
     uint32_t body = ~0u;  // the island's lowest index; ~0u: the first group, of large islands
     uint32_t culprit = ~0u;
     LeastEffort effort{};
-    uint8_t stiffness = 0, wantedStiffness = 0;  // see SolverGroup
-    bool isLoaded = false;                       // likewise
-};
-
-// A contact of a group with substeps of its own, and their number.
-struct SolvedContact {
-    uint32_t pair;
-    int substeps;
+    bool isLoaded = false, isWaiting = false;  // see SolverGroup, IslandWithEffort
 };
 
 struct SavedEfforts {
-    bool areRestored = false;       // the next BuildIslands takes them
-    bool areCurrent = false;        // nothing has changed since they were chosen
-    Array<SavedEffort> groups;      // ascending by body; empty if not current
-    Array<SolvedContact> contacts;  // ascending
+    bool areRestored = false;   // the next BuildIslands takes them
+    bool areCurrent = false;    // nothing has changed since they were chosen
+    Array<SavedEffort> groups;  // ascending by body; empty if not current
     // Versions of ConstraintColoring and PairStore for which restored efforts are valid.
     uint64_t version = 0, loadVersion = 0;
 
@@ -40,8 +32,8 @@ struct SavedEfforts {
 };
 
 inline size_t HeapBytes(const SavedEfforts& saved) {
-    const auto& [areRestored, areCurrent, groups, contacts, version, loadVersion] = saved;
-    return HeapBytes(groups, contacts);
+    const auto& [areRestored, areCurrent, groups, version, loadVersion] = saved;
+    return HeapBytes(groups);
 }
 
 // The efforts of a layout, or those restored but not yet taken.

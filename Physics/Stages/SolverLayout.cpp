@@ -5,12 +5,12 @@
 namespace fulcrum {
 
 size_t HeapBytes(const SolverLayout& layout) {
-    const auto& [groups, efforts, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints,
+    const auto& [groups, efforts, waiting, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints,
                  overflowMoving, overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion, hard,
-                 patternWords, notes, colorCount, islands, version, loadVersion] = layout;
-    return HeapBytes(groups, efforts, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints,
+                 patternWords, notes, colorCount, uncolored, islands, version, loadVersion] = layout;
+    return HeapBytes(groups, efforts, waiting, colors, bodies, islandOf, balls, joints, moving, fixed, overflowJoints,
                      overflowMoving, overflowFixed, jointRows, overflowRows, listedJoints, rowJoints, jointVersion,
-                     hard, patternWords, colorCount, islands, version, loadVersion);
+                     hard, patternWords, colorCount, uncolored, islands, version, loadVersion);
 }
 
 }  // namespace fulcrum

@@ -19,15 +19,11 @@ namespace fulcrum {
 // and without barriers. The grouping does not influence results. Islands share a group if they have the same effort,
 // and joints or none of them. An island that is solved directly, or a large one with joints, has a group of its own.
 struct SolverGroup {
-    bool isLarge = false;                     // solved color by color on all workers
-    bool hasJoints = false;                   // all islands of it have joints, or it is solved directly: see Solve
-    uint32_t colorsBegin = 0, colorsEnd = 0;  // into SolverLayout::colors
-    uint32_t bodiesBegin = 0, bodiesEnd = 0;  // into SolverLayout::bodies
-    LeastEffort effort{};                     // minimum effort, if more than the system's
-    // For islands under load: the substep that determines the stiffness of soft rows, as a fraction of the system's:
-    // 2^(-(i - 9) / 16) (Effort.h). It follows shorter substeps slowly: a sudden increase of stiffness would accelerate
-    // bodies that have sunk with softer rows. 0: the stiffness of the actual substeps.
-    uint8_t stiffness = 0, wantedStiffness = 0;
+    bool isLarge = false;                          // solved color by color on all workers
+    bool hasJoints = false;                        // all islands of it have joints, or it is solved directly: see Solve
+    uint32_t colorsBegin = 0, colorsEnd = 0;       // into SolverLayout::colors
+    uint32_t bodiesBegin = 0, bodiesEnd = 0;       // into SolverLayout::bodies
+    LeastEffort effort{};                          // minimum effort, if more than the system's
     bool isDirect = false;                         // one island, solved directly: see DirectIsland.h
     bool isLoaded = false;                         // then: its contacts, because of loads; it has no joints
     bool isResting = false;                        // then: it is at rest in this step, which takes one substep
@@ -36,12 +32,18 @@ struct SolverGroup {
     bool IsOwn() const { return isDirect || effort.IsAny(); }
 };
 
-// An island with an effort of its own, or that is solved directly because of loads; or all large ones that share one.
+// An island with an effort of its own, or that is solved directly because of loads, or will be once it is calm; or all
+// large ones that share one.
 struct IslandWithEffort {
     uint32_t body = ~0u;  // the lowest index; ~0u: large ones
     uint32_t culprit;     // the body that requires most of it
     uint32_t bodies = 0;  // their number
     uint32_t group;
+    bool isWaiting = false;  // to be calm
+};
+struct WaitingBody {
+    uint32_t island;  // into SolverLayout::efforts
+    uint32_t body;
 };
 
 // Kinds of batches of a color, in the order of solving.
@@ -85,6 +87,7 @@ struct ListedJoint {
 struct SolverLayout {
     Array<SolverGroup> groups;  // empty: nothing to solve
     Array<IslandWithEffort> efforts;
+    Array<WaitingBody> waiting;  // of those islands
     Array<ColorBatches> colors;
     Array<uint32_t> bodies;    // dynamic bodies with constraints, by group; sorted in groups with joints
     Array<uint32_t> islandOf;  // by place in `bodies`, of groups with joints: the island, from 0 in each group
@@ -92,7 +95,8 @@ struct SolverLayout {
     BatchList<JointBatch<kLanes>> joints;
     BatchList<ContactBatch<kLanes, false>> moving;
     BatchList<ContactBatch<kLanes, true>> fixed;
-    // Constraints without a color: solved serially after the first group's colors.
+    // Constraints without a color, of groups that are not solved directly: solved serially after the first group's
+    // colors.
     Array<JointBatch<1>> overflowJoints;
     Array<ContactBatch<1, false>> overflowMoving;
     Array<ContactBatch<1, true>> overflowFixed;
@@ -105,12 +109,13 @@ struct SolverLayout {
     Array<uint32_t> patternWords;  // DirectPattern::Words of groups that are solved directly
     Array<ContactNote> notes;      // by contact, zero if not in a batch; empty without contact events
     uint32_t colorCount = 0;       // colors in use
+    uint32_t uncolored = 0;        // number of constraints without a color
     uint32_t islands = 0;
     uint64_t version = 0;      // version of the coloring from which this was made
     uint64_t loadVersion = 0;  // version of PairStore's loads
 
     bool HasJoints() const { return balls.count + joints.count > 0 || !overflowJoints.empty(); }
-    size_t OverflowCount() const;  // number of constraints without a color
+    size_t OverflowCount() const;  // their number
     std::span<const uint32_t> BodiesOf(const SolverGroup& group) const {
         return std::span(bodies).subspan(group.bodiesBegin, group.bodiesEnd - group.bodiesBegin);
     }

@@ -49,10 +49,9 @@ void Color(uint32_t bodyCount, std::span<PairChange> changes, PairStore& pairs, 
 void RemoveSeamContacts(const BodyStore& bodies, const ColliderStore& colliders, const ConstraintColoring& coloring,
                         PairStore& pairs, Array<uint32_t>& seams, ScratchArena& scratch);
 
-// Sorts the colored constraints into the solver's groups and batches, if they changed. Islands under load get more
-// effort (ContactLoads.h): initializes the loads of contacts that began; limits impulses in records of islands that
-// lose effort. Updates the locks and row counts of joints from their types. Takes and clears efforts restored by a
-// snapshot (`saved`).
+// Sorts the colored constraints into the solver's groups and batches, if they changed. Islands under load are solved
+// directly (ContactLoads.h): initializes the loads of contacts that began. Updates the locks and row counts of joints
+// from their types. Takes and clears efforts restored by a snapshot (`saved`).
 void BuildIslands(const StepContext& step, const BodyStore& bodies, const ConstraintColoring& coloring,
                   std::span<const uint32_t> began, PairStore& pairs, JointStore& joints, SolverLayout& layout,
                   SavedEfforts& saved, ScratchArena& scratch);

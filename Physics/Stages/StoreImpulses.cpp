@@ -1,6 +1,7 @@
 // Writes the impulses of the batches back to the records of contacts and joints, and updates their load levels.
 #include <Fulcrum/Physics/Stages/ContactLoads.h>
 #include <Fulcrum/Physics/Stages/Effort.h>
+#include <Fulcrum/Physics/Stages/FindIslands.h>
 #include <Fulcrum/Physics/Stages/Stages.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ struct StoreScale {
     float dt, substepDt;    // s, of the step and of the batch's substeps
     float impulseScale;     // see Effort
     const SinkScale* sink;  // for contacts; null if load levels are off
-    const GapScale* gap;    // for joints; null if load levels are off
+    const GapScale* gap;    // for joints; null if none has a target
 };
 
 // Returns whether a joint began to be strained or past a limit.
@@ -50,13 +51,13 @@ void StoreBatch(const Records& to, const JointBatch<N>& batch, const StoreScale&
     StoreJoints(batch, to.joints.records.data(), to.joints.types.data(), to.bodies.states.data(), scale.dt,
                 scale.impulseScale);
     NoteRowErrors(batch, to.joints.types.data(), scale.substepDt, findings.joints);
-    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.bodies, to.joints);
+    if (scale.gap) findings.strainsBegan |= NoteGaps(batch, *scale.gap, to.joints);
     findings.strainsBegan |= NoteStrained(batch, to.joints);
 }
 template <int N>
 void StoreBatch(const Records& to, const BallBatch<N>& batch, const StoreScale& scale, WorkerFindings& findings) {
     StoreJoints(batch, to.joints.records.data(), scale.dt, scale.impulseScale);
-    if (scale.gap) findings.loadsChanged |= NoteGaps(batch, *scale.gap, to.bodies, to.joints);
+    if (scale.gap) findings.strainsBegan |= NoteGaps(batch, *scale.gap, to.joints);
 }
 
 template <class Batch>
@@ -85,6 +86,18 @@ void FindWorstJoints(const JointStore& joints, std::span<const WorkerFindings> w
     if (worst.angularJoint != ~0u) report.mostTurnedJoint = joints.IdOf(worst.angularJoint);
 }
 
+// Whether some island that waits to be calm is: then it is to be solved directly.
+bool IsAnyCalm(const StepContext& step, const BodyStore& bodies, const SolverLayout& layout, ScratchArena& scratch) {
+    if (layout.waiting.empty()) return false;
+    const float calm = CalmSpeed(step.settings);
+    std::span<bool> isMoving = scratch.Allocate<bool>(layout.efforts.size());
+    std::ranges::fill(isMoving, false);
+    for (const auto& [island, body] : layout.waiting)
+        isMoving[island] = isMoving[island] || !(Length(bodies.LinearVelocityOf(body)) < calm);
+    return std::any_of(layout.waiting.begin(), layout.waiting.end(),
+                       [&](const WaitingBody& waiting) { return !isMoving[waiting.island]; });
+}
+
 // Period in steps in which load levels may decrease, see StepsFor.
 constexpr uint32_t kStepsToForget = 16;
 
@@ -98,28 +111,11 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
     const bool notesSinks = AdaptsToLoads(settings, bodies), notesGaps = AdaptsToGaps(settings, joints);
     const uint8_t stepsOfLoad = StepsOfLoad(step);
     const bool forgets = step.number % StepsFor(kStepsToForget, step) == 0;
-    const bool notesLarge = settings.accuracy.largeIslands || layout.OverflowCount() > 0;
-    // impulseScale: see Effort; stiffness: see LoadLevel. Springs are those of `springs` of the system's substep.
-    const auto sinkScaleOf = [&](float impulseScale, float springs, uint8_t stiffness) {
-        return SinkScale{.target = settings.accuracy.penetration,
-                         .inverseDt = 1 / (step.substepDt * impulseScale),
-                         .softness = step.softness,
-                         .loadSoftness = LoadSoftnessOf(step),
-                         .depthScale = 1 / (springs * springs),
-                         .gravity = settings.gravity,
-                         .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
-                         .stepsOfLoad = stepsOfLoad,
-                         .forgets = forgets,
-                         .isOfOtherLength = step.substepDt != step.lastSubstepDt};
-    };
-    const auto gapScaleOf = [&](float impulseScale, uint8_t stiffness) {
-        return GapScale{.target = settings.accuracy.jointError,
-                        .drift = DriftIn(settings.accuracy, impulseScale),
-                        .impulseScale = impulseScale,
-                        .stiffness = stiffness > 0 ? stiffness : kUsualStiffness,
-                        .stepsOfLoad = stepsOfLoad,
-                        .forgets = forgets,
-                        .isOfOtherLength = step.substepDt != step.lastSubstepDt};
+    const bool notesLarge = layout.OverflowCount() > 0;
+    const GapScale gaps{settings.accuracy.jointError, stepsOfLoad};
+    const auto sinkScaleOf = [&](float impulseScale) {  // see Effort
+        return SinkScale{settings.accuracy.penetration, 1 / (step.substepDt * impulseScale), LoadSoftnessOf(step),
+                         stepsOfLoad, forgets};
     };
     uint32_t stored[kBatchKinds] = {};
     const auto storeTo = [&](auto&& endOf, const StoreScale& scale) {
@@ -129,20 +125,16 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
             stored[kind] = end;
         });
     };
-    const SinkScale usualSink = sinkScaleOf(1, 1, kUsualStiffness);
-    const GapScale usualGap = gapScaleOf(1, kUsualStiffness);
-    const StoreScale usual{step.dt, step.substepDt, 1, notesSinks ? &usualSink : nullptr,
-                           notesGaps ? &usualGap : nullptr};
+    const SinkScale usualSink = sinkScaleOf(1);
+    const StoreScale usual{step.dt, step.substepDt, 1, notesSinks ? &usualSink : nullptr, notesGaps ? &gaps : nullptr};
     for (const SolverGroup& group : layout.groups) {
         const bool isFirst = &group == &layout.groups.front();
         if (!group.isLarge && !group.effort.IsAny() && !group.isLoaded) continue;
         const float impulseScale = EffortOf(step, group).impulseScale;
-        const float springs = group.isLoaded ? 1 : SpringsOf(group, impulseScale);
-        const SinkScale sink = sinkScaleOf(impulseScale, springs, group.stiffness);
-        const GapScale gap = gapScaleOf(impulseScale, group.stiffness);
+        const SinkScale sink = sinkScaleOf(impulseScale);
         const bool isNoted = notesLarge || !group.isLarge;
         const StoreScale scale{step.dt, step.substepDt * impulseScale, impulseScale,
-                               isNoted && notesSinks ? &sink : nullptr, isNoted && notesGaps ? &gap : nullptr};
+                               isNoted && notesSinks ? &sink : nullptr, usual.gap};
         if (isFirst)
             ForEachOverflowList(layout, [&](const auto& batches) {
                 StoreAll(to, batches, 0, static_cast<uint32_t>(batches.size()), scale, workers);
@@ -154,6 +146,7 @@ void StoreImpulses(const StepContext& step, const BodyStore& bodies, const Solve
     }
     storeTo([](const auto& list, BatchKind) { return list.count; }, usual);
     FindWorstJoints(joints, workers.findings, report);
+    pairs.loadVersion += IsAnyCalm(step, bodies, layout, workers.scratch);
     for (WorkerFindings& findings : workers.findings) {
         joints.strainVersion += findings.strainsBegan;
         pairs.loadVersion += findings.loadsChanged || findings.strainsBegan;

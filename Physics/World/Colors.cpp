@@ -51,7 +51,8 @@ void UncolorJoint(JointStore& joints, ConstraintColoring& coloring, uint32_t ind
     const uint32_t moved = coloring.Remove(Coloring::Kind::Joint, EntryOf(joint, index), joint.color);
     joints.joints[moved].color.slot = joint.color.slot;
     joint.color = {};
-    joint.isStrained = joint.wasPastLimit = false;
+    joint.isStrained = joint.wasPastLimit = joint.isBeyondTarget = false;
+    joint.stepsBeyond = 0;
 }
 
 void RecolorJointsOf(const BodyStore& bodies, JointStore& joints, ConstraintColoring& coloring, uint32_t body) {

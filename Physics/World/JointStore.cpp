@@ -17,7 +17,6 @@ uint32_t JointStore::Allocate() {
         joints.emplace_back();
         records.emplace_back();
         types.emplace_back();
-        gaps.emplace_back();
         breakable.Reserve(index + 1);
     }
     const uint32_t generation = joints[index].generation;
@@ -25,7 +24,6 @@ uint32_t JointStore::Allocate() {
     joints[index].generation = generation;
     joints[index].exists = true;
     records[index] = {};
-    gaps[index] = {};
     ++count_;
     return index;
 }
@@ -35,7 +33,6 @@ void JointStore::Reserve(size_t more, size_t bodies) {
     ReserveMore(joints, grown);
     ReserveMore(records, grown);
     ReserveMore(types, grown);
-    ReserveMore(gaps, grown);
     const size_t size = joints.size() + grown;
     if (size == 0) return;
     breakable.ReserveRoom(static_cast<uint32_t>(size));
@@ -98,9 +95,8 @@ bool JointStore::ForbidsContact(uint32_t bodyA, uint32_t bodyB) const {
 size_t HeapBytes(const Joint& joint) { return joint.type ? sizeof(JointType) : 0; }
 
 size_t HeapBytes(const JointStore& store) {
-    const auto& [records, types, joints, gaps, breakable, targetCount, strainVersion, moved, first, free, count] =
-        store;
-    return HeapBytes(records, types, joints, gaps, breakable, targetCount, strainVersion, moved, first, free, count);
+    const auto& [records, types, joints, breakable, targetCount, strainVersion, moved, first, free, count] = store;
+    return HeapBytes(records, types, joints, breakable, targetCount, strainVersion, moved, first, free, count);
 }
 
 }  // namespace fulcrum

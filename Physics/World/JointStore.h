@@ -9,7 +9,6 @@
 #include <Fulcrum/Math/Memory.h>
 #include <Fulcrum/Physics/JointSettings.h>
 #include <Fulcrum/Physics/World/IndexSet.h>
-#include <Fulcrum/Physics/World/LoadLevel.h>
 
 #include <algorithm>
 #include <memory>
@@ -58,6 +57,9 @@ struct Joint {
     bool fixed[2] = {false, false};  // the body is immovable: static, kinematic or frozen
     // Has been since it was colored, see JointStrain.h.
     bool isStrained = false, wasPastLimit = false;
+    // Likewise: its gap has exceeded its target (Stages/ContactLoads.h), or does so for so many steps.
+    bool isBeyondTarget = false;
+    uint8_t stepsBeyond = 0;
     JointPriority priority = JointPriority::Normal;
     float breakForce = 0, breakTorque = 0;
     LeastEffort effort;     // minimum effort for its island
@@ -88,10 +90,9 @@ public:
     Array<JointRecord> records;
     Array<JointType*> types;
     Array<Joint> joints;
-    Array<GapLevel> gaps;  // of gaps between anchors
     IndexSet breakable;
     uint32_t targetCount = 0;    // joints with an errorTarget
-    uint64_t strainVersion = 0;  // incremented when a joint begins to be strained or past a limit
+    uint64_t strainVersion = 0;  // incremented when a joint begins to be strained, past a limit or beyond its target
     Array<MovedBody> moved;      // in the order in which they were moved first; empty after a step
 
     uint32_t Count() const { return count_; }

@@ -1,5 +1,5 @@
-// Targets of accuracy, and what becomes of load levels, which are relative to them, when they change: sinks and gaps
-// are what they were, so that no effort is lost. Called by the setters of the public interface; one thread.
+// Targets of accuracy, and their changes: what a joint has exceeded counts for the old one. Called by the setters of
+// the public interface; one thread.
 #pragma once
 
 #include <Fulcrum/Physics/World/WorldState.h>

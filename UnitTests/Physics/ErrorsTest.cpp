@@ -171,7 +171,6 @@ TEST(Errors, ABadSystemIsNotCreated) {
         {"baumgarte", ErrorCode::NonFinite, [](S& s) { s.solver.baumgarte = kNaN; }},
         {"accuracy.penetration", ErrorCode::NonPositive, [](S& s) { s.accuracy.penetration = 0; }},
         {"accuracy.penetration", ErrorCode::NonFinite, [](S& s) { s.accuracy.penetration = kNaN; }},
-        {"accuracy.mostSubsteps", ErrorCode::OutOfRange, [](S& s) { s.accuracy.mostSubsteps = 256; }},
         {"sleep.seconds", ErrorCode::Negative, [](S& s) { s.sleep.seconds = -1; }},
         {"sleep.linearSpeed", ErrorCode::NonFinite, [](S& s) { s.sleep.linearSpeed = kInfinite; }},
         {"speculativeDistance", ErrorCode::NonPositive, [](S& s) { s.speculativeDistance = 0; }},

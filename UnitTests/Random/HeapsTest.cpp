@@ -19,7 +19,11 @@ constexpr int kSeeds = 40, kAllSeeds = 400;
 struct Allowed {
     int daily, all;
 };
-constexpr Allowed kSmallGains = {4, 113}, kLargeGains = {1, 28}, kLosses = {1, 4}, kRestless = {4, 48};
+struct Bounds {
+    int substeps;
+    Allowed smallGains, largeGains, losses, restless;
+};
+constexpr Bounds kBounds[] = {{4, {6, 113}, {1, 28}, {1, 9}, {5, 56}}, {8, {4, 113}, {1, 28}, {1, 4}, {4, 48}}};
 
 class Count {
 public:
@@ -38,18 +42,23 @@ private:
 };
 
 TEST(Heaps, LoseEnergyStayInThePitAndComeToRest) {
-    Count smallGains, largeGains, losses, restless;
-    for (int seed = 1; seed <= Cases(kSeeds, kAllSeeds); ++seed) {
-        const HeapFall fall = DropHeap(RandomHeap(static_cast<uint64_t>(seed)), Trial{});
-        smallGains.Note(fall.gain > kSmallGain, seed, fall.gain);
-        largeGains.Note(fall.gain > kLargeGain, seed, fall.gain);
-        losses.Note(fall.lost > 0, seed, fall.lost);
-        restless.Note(!(fall.speed <= kRestSpeed), seed, fall.speed);
+    for (const Bounds& bounds : kBounds) {
+        SCOPED_TRACE(::testing::Message() << bounds.substeps << " substeps");
+        Trial trial;
+        trial.settings.solver.substeps = bounds.substeps;
+        Count smallGains, largeGains, losses, restless;
+        for (int seed = 1; seed <= Cases(kSeeds, kAllSeeds); ++seed) {
+            const HeapFall fall = DropHeap(RandomHeap(static_cast<uint64_t>(seed)), trial);
+            smallGains.Note(fall.gain > kSmallGain, seed, fall.gain);
+            largeGains.Note(fall.gain > kLargeGain, seed, fall.gain);
+            losses.Note(fall.lost > 0, seed, fall.lost);
+            restless.Note(!(fall.speed <= kRestSpeed), seed, fall.speed);
+        }
+        smallGains.ExpectAtMost(bounds.smallGains, "m, small gains of energy:");
+        largeGains.ExpectAtMost(bounds.largeGains, "m, large gains of energy:");
+        losses.ExpectAtMost(bounds.losses, "lost bodies:");
+        restless.ExpectAtMost(bounds.restless, "m/s, at the end:");
     }
-    smallGains.ExpectAtMost(kSmallGains, "m, small gains of energy:");
-    largeGains.ExpectAtMost(kLargeGains, "m, large gains of energy:");
-    losses.ExpectAtMost(kLosses, "lost bodies:");
-    restless.ExpectAtMost(kRestless, "m/s, at the end:");
 }
 
 TEST(Heaps, AreSatisfiedAndApartAsTheyAreCreated) {

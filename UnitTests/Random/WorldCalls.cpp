@@ -55,11 +55,8 @@ void SetSettings(Twin& twin, Values& values, const CallTargets&, Outcome& outcom
     }
     if (values.Chance(0.1f)) settings.narrowPhase = values.One<NarrowPhaseMethod>(2);
     mostly(settings.accuracy.penetration, 0.001f, 0.1f);
-    if (values.Chance(0.1f)) settings.accuracy.mostSubsteps = values.Integer(1, 255);
     if (values.Chance(0.1f)) settings.accuracy.jointError = values.Setting(0.0005f, 0.1f);
-    if (values.Chance(0.1f)) settings.accuracy.largeIslands = values.Chance(0.5f);
     settings.measuresErrors = settings.sleep.enabled;
-    if (settings.accuracy.largeIslands) settings.accuracy.drift = 0.01f;
     if (values.Chance(0.3f))
         settings.events = {
             .contacts = values.Chance(0.7f), .stays = values.Chance(0.5f), .bodies = values.Chance(0.5f)};

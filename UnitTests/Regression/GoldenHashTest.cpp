@@ -13,11 +13,11 @@
 namespace fulcrum::testing {
 namespace {
 
-constexpr uint64_t kGoldenHash = 0xdd13e598aed298e1ull;
+constexpr uint64_t kGoldenHash = 0x24d159f834794dbcull;
 constexpr uint64_t kGoldenHashOfJoints = 0x473da7684c22a482ull;
-constexpr uint64_t kGoldenHashOfSurfaces = 0x39a2535ccebac201ull;
+constexpr uint64_t kGoldenHashOfSurfaces = 0xef9a70ead0e6dc84ull;
 constexpr uint64_t kGoldenHashOfFastBodies = 0xc78b91e4bdeb6926ull;
-constexpr uint64_t kGoldenHashOfGuidedBodies = 0x5f8e3197df40f71aull;
+constexpr uint64_t kGoldenHashOfGuidedBodies = 0x32d332132cb2078aull;
 
 std::string Hex(uint64_t number) {
     char text[24];

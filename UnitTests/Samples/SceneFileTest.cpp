@@ -236,9 +236,11 @@ TEST(SceneFile, ErrorsNameThePath) {
 // What earlier versions had and this one does not need is read past, with a note.
 TEST(SceneFile, SettingsOfEarlierVersionsAreNoted) {
     const Result<SceneDescription> read =
-        SceneFromJson(R"({"fulcrumScene": 1, "settings": {"jointFrequency": 30, "jointDampingRatio": 2}})");
+        SceneFromJson(R"({"fulcrumScene": 1, "settings": {"jointFrequency": 30, "jointDampingRatio": 2,
+                          "accuracy": {"penetration": 0.01, "drift": 0.1, "mostSubsteps": 64, "largeIslands": true}}})");
     ASSERT_TRUE(read) << read.GetError().message;
-    ASSERT_EQ(read.Value().notes.size(), 2u);
+    ASSERT_EQ(read.Value().notes.size(), 5u);
+    EXPECT_EQ(read.Value().settings.accuracy.penetration, 0.01f);
     EXPECT_NE(std::find(read.Value().notes.begin(), read.Value().notes.end(),
                         "settings.jointFrequency has no effect: locks of joints are hard"),
               read.Value().notes.end());

@@ -222,8 +222,7 @@ TEST(SpringEnergyOfEfforts, IsTheSameAdaptedOrFixed) {
     const auto run = [](bool adapts) {
         SystemSettings settings = NoSleep();
         if (!adapts) {
-            settings.accuracy.penetration = settings.accuracy.jointError = settings.accuracy.drift =
-                std::numeric_limits<float>::infinity();
+            settings.accuracy.penetration = settings.accuracy.jointError = std::numeric_limits<float>::infinity();
             settings.exactJointLoad = std::numeric_limits<float>::infinity();
         }
         TestWorld world(settings);
