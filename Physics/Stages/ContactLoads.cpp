@@ -183,7 +183,6 @@ template <int N, bool kFixedB>
 bool NoteSinks(const ContactBatch<N, kFixedB>& batch, const SinkScale& scale, const BodyStore& bodies,
                const JointStore& joints, PairStore& pairs) {
     using Real = Wide<N>;
-    const Real zero(0.0f);
     Real impulse(0.0f);
     for (int i = 0; i < batch.pointCount; ++i) impulse += batch.rows[i].impulse;
     Real inverseMass = batch.inverseA.mass, squaredSize = SquaredSizeOf(batch.inverseA);

@@ -398,8 +398,8 @@ bool DirectIsland::MaySolveContacts(const PairStore& pairs) const {
 }
 
 bool DirectIsland::NoteMisses() {
-    if (contacts_.Count() <= kFewContacts) factorizations_ = 0;
-    const uint32_t times = factorizations_ / (kMostFactorizations * std::max(solutions_, kLeastSubsteps));
+    const bool areFew = contacts_.Count() <= kFewContacts;
+    const uint32_t times = areFew ? 0 : factorizations_ / (kMostFactorizations * std::max(solutions_, kLeastSubsteps));
     bool areMany = false;
     for (const uint32_t body : layout_.BodiesOf(group_)) {
         BodyCold& cold = bodies_.cold[body];
@@ -407,7 +407,7 @@ bool DirectIsland::NoteMisses() {
         if (times > 0) misses = static_cast<uint8_t>(std::min<uint32_t>(misses + times, kMostMisses));
         else if (misses > 0) --misses;
         cold.wasDirect = true;
-        areMany |= misses == kMostMisses && contacts_.Count() > kFewContacts;
+        areMany |= !areFew && misses == kMostMisses;
     }
     if (areMany) contacts_.ForgetImpulses();
     return areMany;

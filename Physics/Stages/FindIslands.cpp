@@ -243,6 +243,11 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
     // By root, into layout.efforts.
     std::span<uint32_t> effortOf = scratch.Allocate<uint32_t>(ownEfforts > 0 ? count : 0);
     std::ranges::fill(effortOf, Islands::kNone);
+    const auto addEffort = [&](uint32_t root, uint32_t culprit) {
+        effortOf[root] = static_cast<uint32_t>(layout.efforts.size());
+        layout.efforts.push_back(
+            {.culprit = culprit, .group = result.groupOf[root], .isWaiting = traits[root].isWaiting});
+    };
     OpenGroups open(groups, 1 + ownEfforts, scratch);
     IslandEffort overflowing;
     for (uint32_t i = 0; i < count; ++i) {
@@ -268,6 +273,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         if (large && !own.isDirect && (its.overflows || !(effort.least.IsAny() || differs))) {
             result.groupOf[i] = Islands::kLargeGroup;
             if (its.overflows && effort.least.IsAny()) Raise(overflowing, effort);
+            if (its.isWaiting) addEffort(i, effort.culprit);
             continue;
         }
         own.hasJoints = its.hasJoints || own.isDirect;
@@ -280,9 +286,7 @@ Islands FindIslands(const StepContext& step, const BodyStore& bodies, const Cons
         } else {
             result.groupOf[i] = open.Add(own, sizes[i]);
         }
-        if (!effort.least.IsAny() && !own.isLoaded && !its.isWaiting) continue;
-        effortOf[i] = static_cast<uint32_t>(layout.efforts.size());
-        layout.efforts.push_back({.culprit = effort.culprit, .group = result.groupOf[i], .isWaiting = its.isWaiting});
+        if (effort.least.IsAny() || own.isLoaded || its.isWaiting) addEffort(i, effort.culprit);
     }
     for (uint32_t i = 0; i < effortOf.size(); ++i) {
         if (effortOf[result.rootOf[i]] == Islands::kNone) continue;

@@ -187,6 +187,18 @@ TEST(Structures, ASlabOnAHundredBoxesSinksLittle) {
     EXPECT_LT(slab.Fall(), 0.004);
 }
 
+// Likewise when it falls onto them, faster than what is calm: then it is solved directly once it has come to rest.
+TEST(Structures, ASlabThatFallsOnAHundredBoxesSinksLittle) {
+    Structure slab;
+    for (int i = 0; i < 100; ++i)
+        slab.Add({.shape = CubeOf(0.5f), .position = {1.2 * (i % 10), 0.5, 1.2 * (i / 10)}, .mass = 1000});
+    slab.Add({.shape = BoxOf(7, 0.5f, 7), .position = {5.4, 1.7, 5.4}, .mass = 1e5f});
+    slab.world.Run(3);
+    EXPECT_GT(slab.world.Report().overflowConstraints, 0u);
+    EXPECT_TRUE(slab.world.Report().mostEffort[0].isDirect);
+    EXPECT_LT(slab.world.Report().largestPenetration, 1e-4f);
+}
+
 TEST(Structures, SmallBoxesStandAsLargeOnes) {
     for (const float edge : {1.0f, 0.05f, 0.01f, 0.001f}) {
         const double e = double{edge};
